@@ -1,0 +1,47 @@
+"""The exceptions luztar raises: every message names the culprit, the place and the remedy."""
+
+from __future__ import annotations
+
+
+class LuztarError(Exception):
+    """The base of every error luztar raises on purpose.
+
+    Parameters
+    ----------
+    kind : str
+        What is wrong, in one sentence.
+    where : str, optional
+        The file, line, column or argument.
+    remedy : str, optional
+        What to do about it.
+    """
+
+    def __init__(self, kind: str, where: str = "", remedy: str = "") -> None:
+        self.kind = kind
+        self.where = where
+        self.remedy = remedy
+        super().__init__(kind, where, remedy)
+
+    def __str__(self) -> str:
+        text = f"{self.where}: {self.kind}" if self.where else self.kind
+        return f"{text}. {self.remedy}" if self.remedy else text
+
+    def to_dict(self) -> dict[str, str]:
+        """Return ``kind``, ``where`` and ``remedy`` as the JSON interface prints them."""
+        return {"kind": self.kind, "where": self.where, "remedy": self.remedy}
+
+
+class ParameterError(LuztarError, ValueError):
+    """A value that cannot be used: out of range, not finite, unknown, or of the wrong shape."""
+
+
+class MeasurementError(LuztarError, ValueError):
+    """A file or table that cannot be read as a measurement."""
+
+
+class ModelError(LuztarError, ValueError):
+    """A model or model file that makes no sense."""
+
+
+class MissingError(LuztarError, ImportError):
+    """An optional package that the call needs and that is not installed."""

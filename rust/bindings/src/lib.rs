@@ -1,0 +1,16 @@
+//! The Python module `luztar._core`: the export list. Each binding slices, detaches, calls and maps the error.
+#![allow(missing_docs, clippy::needless_pass_by_value)]
+
+mod error;
+
+use pyo3::prelude::*;
+
+#[pymodule(gil_used = false)]
+mod _core {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,110 @@
+//! The one error type of the core: every variant names the argument, its value and what would be accepted.
+
+use thiserror::Error;
+
+/// What can be wrong with an input; the text is a sentence for the user.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    /// A value that is NaN or infinite.
+    #[error(
+        "{name} holds {value} at index {index}; remove or split the record there, every value must be finite"
+    )]
+    NonFinite {
+        /// The argument.
+        name: &'static str,
+        /// The position of the first such value.
+        index: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A value outside the interval it must lie in.
+    #[error("{name} is {value} but must lie in {interval}")]
+    OutOfRange {
+        /// The argument.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// The accepted interval, in mathematical notation.
+        interval: String,
+    },
+    /// Two lengths that must agree, or a length that is too small.
+    #[error("{name} has {got} values but {expected} are needed")]
+    Length {
+        /// The argument.
+        name: &'static str,
+        /// What was needed, in words.
+        expected: String,
+        /// The length found.
+        got: usize,
+    },
+    /// A name that is not known.
+    #[error("unknown {what} '{name}'; known are: {known}")]
+    Unknown {
+        /// What kind of thing was looked up.
+        what: &'static str,
+        /// The name that was asked for.
+        name: String,
+        /// The names that exist.
+        known: String,
+    },
+    /// Columns that cannot be told apart: the least-squares problem has no unique answer.
+    #[error("{name} cannot be determined: {reason}")]
+    Singular {
+        /// The quantity.
+        name: &'static str,
+        /// Why it has no unique value.
+        reason: String,
+    },
+}
+
+/// Refuses NaN and infinities, naming the first position.
+///
+/// # Errors
+/// [`Error::NonFinite`] with the index and value of the first offender.
+pub fn require_finite(name: &'static str, values: &[f64]) -> Result<(), Error> {
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(Error::NonFinite {
+            name,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
+/// Refuses two lengths that differ.
+///
+/// # Errors
+/// [`Error::Length`] naming the second argument.
+pub fn require_same_length(
+    name: &'static str,
+    values: &[f64],
+    of: &'static str,
+    len: usize,
+) -> Result<(), Error> {
+    if values.len() == len {
+        Ok(())
+    } else {
+        Err(Error::Length {
+            name,
+            expected: format!("{len}, as many as {of},"),
+            got: values.len(),
+        })
+    }
+}
+
+/// Refuses a value that is not a positive finite number.
+///
+/// # Errors
+/// [`Error::OutOfRange`].
+pub fn require_positive(name: &'static str, value: f64) -> Result<(), Error> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::OutOfRange {
+            name,
+            value,
+            interval: "(0, inf)".into(),
+        })
+    }
+}

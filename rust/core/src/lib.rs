@@ -1,0 +1,9 @@
+//! luztar: the arithmetic of friction and freeplay in steering mechanisms.
+//!
+//! One function stands behind most of it: `luz(x, a) = x - clamp(x, -a, a)` (see [`projections`]). The crate knows
+//! no Python, no files, no clock and no global state.
+
+pub mod error;
+pub mod projections;
+
+pub use error::Error;
