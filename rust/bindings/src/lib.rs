@@ -1,6 +1,8 @@
 //! The Python module `luztar._core`: the export list. Each binding slices, detaches, calls and maps the error.
 #![allow(missing_docs, clippy::needless_pass_by_value)]
 
+mod driven;
+mod effects;
 mod error;
 
 use pyo3::prelude::*;
@@ -8,6 +10,11 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _core {
     use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::driven::Recording;
+    #[pymodule_export]
+    use crate::effects::effect_cards;
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -3,6 +3,8 @@
 //! One function stands behind most of it: `luz(x, a) = x - clamp(x, -a, a)` (see [`projections`]). The crate knows
 //! no Python, no files, no clock and no global state.
 
+pub mod driven;
+pub mod effects;
 pub mod error;
 pub mod projections;
 

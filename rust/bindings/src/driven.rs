@@ -1,0 +1,129 @@
+//! `luztar._core.Recording`: a run prepared for driven fits.
+
+use luztar::driven::{Band, Recording as Core, Term};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::error::CoreError;
+
+/// (effect, inner parameters) pairs as Python gives them.
+type Terms = Vec<(String, Vec<f64>)>;
+
+fn terms(given: Terms) -> Vec<Term> {
+    given
+        .into_iter()
+        .map(|(effect, inner)| Term { effect, inner })
+        .collect()
+}
+
+/// A run prepared for driven fits; immutable, so that threads may share it.
+#[pyclass(frozen, module = "luztar._core")]
+pub struct Recording(Core);
+
+#[pymethods]
+impl Recording {
+    #[new]
+    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, already_filtered, hysteresis, minimum_travel))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        position: PyReadonlyArray1<'_, f64>,
+        sample_rate_hz: f64,
+        band_hz: Option<f64>,
+        decimate: Option<usize>,
+        already_filtered: bool,
+        hysteresis: f64,
+        minimum_travel: f64,
+    ) -> PyResult<Self> {
+        let x = position.as_slice()?;
+        let band = Band {
+            upper_hz: band_hz,
+            decimate,
+            already_filtered,
+        };
+        let core = py
+            .detach(|| Core::new(x, sample_rate_hz, band, hysteresis, minimum_travel))
+            .map_err(CoreError)?;
+        Ok(Self(core))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+
+    #[getter]
+    fn resolution(&self) -> f64 {
+        self.0.resolution()
+    }
+
+    #[getter]
+    fn range(&self) -> f64 {
+        self.0.range()
+    }
+
+    #[getter]
+    fn decimate(&self) -> usize {
+        self.0.decimate()
+    }
+
+    /// Position, speed and acceleration at the kept samples.
+    fn kept<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 3] {
+        self.0.kept().map(|v| v.into_pyarray(py))
+    }
+
+    /// (onset, turn, direction, onset uncertainty in seconds) of every stroke, in samples of the full rate.
+    fn strokes(&self) -> Vec<(usize, usize, f64, f64)> {
+        self.0
+            .strokes()
+            .iter()
+            .map(|s| (s.onset, s.turn, s.direction, s.onset_uncertainty_s))
+            .collect()
+    }
+
+    fn measured<'py>(
+        &self,
+        py: Python<'py>,
+        channel: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let x = channel.as_slice()?;
+        let kept = py.detach(|| self.0.measured(x)).map_err(CoreError)?;
+        Ok(kept.into_pyarray(py))
+    }
+
+    fn state<'py>(&self, py: Python<'py>, model: Terms) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let model = terms(model);
+        Ok(py
+            .detach(|| self.0.state(&model))
+            .map_err(CoreError)?
+            .into_pyarray(py))
+    }
+
+    fn reversal_shift<'py>(
+        &self,
+        py: Python<'py>,
+        model: Terms,
+        before_s: f64,
+        after_s: f64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let model = terms(model);
+        let kept = py
+            .detach(|| self.0.reversal_shift(&model, before_s, after_s))
+            .map_err(CoreError)?;
+        Ok(kept.into_pyarray(py))
+    }
+
+    /// Shape (columns, kept samples).
+    fn columns<'py>(
+        &self,
+        py: Python<'py>,
+        model: Terms,
+        wanted: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let model = terms(model);
+        let columns = py
+            .detach(|| self.0.columns(&model, &wanted))
+            .map_err(CoreError)?;
+        let shape = [columns.len(), columns.first().map_or(0, Vec::len)];
+        columns.concat().into_pyarray(py).reshape(shape)
+    }
+}

@@ -1,0 +1,13 @@
+//! Driven runs: the motion is given, the torque follows. A recording is prepared once; every model is then a set of
+//! columns, each through the measurement's own low pass, whose sum with coefficients is the model's torque.
+
+mod columns;
+mod contact;
+mod kinematics;
+mod recording;
+mod resolution;
+mod strokes;
+
+pub use columns::{Term, inner_of};
+pub use recording::{Band, Recording};
+pub use strokes::Stroke;

@@ -1,0 +1,204 @@
+//! One run prepared for driven fits: kinematics, strokes and the comparison's low pass.
+
+use super::kinematics::derivative;
+use super::resolution::{Resolution, span};
+use super::strokes::{Stroke, strokes};
+use crate::Error;
+use crate::error::{require_finite, require_positive};
+use crate::signal::{CutoffAt, Edges, LowPass, Passes, ZeroPhase};
+
+/// Poles per pass of the low pass of a comparison and of the kinematics.
+const POLES: usize = 4;
+
+/// The kinematics keep this many times the bandwidth of the comparison: a law such as `exp(-(w/v)^2)` makes higher
+/// harmonics of the speed, and what lies beyond 2.5 times the band changes nothing below it.
+const KINEMATICS_OVER_BAND: f64 = 2.5;
+
+/// The comparison keeps at least this many samples per period of the band's upper edge: at four times the edge the
+/// low pass, 8 poles in all, is down to 1.5e-5, so nothing folds back.
+const SAMPLES_PER_BAND_PERIOD: f64 = 8.0;
+
+/// The frequency range of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Upper edge, -3 dB per pass; None compares the record as it is.
+    pub upper_hz: Option<f64>,
+    /// Keep every n-th sample of the comparison; None chooses n from the band.
+    pub decimate: Option<usize>,
+    /// The torque channel has been low-passed by this band before: it is left alone, the model's columns are not.
+    pub already_filtered: bool,
+}
+
+/// A prepared run. Positions are rad on a rig, m on an axis; everything else follows from that.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    pub(super) sample_rate_hz: f64,
+    /// What laws see as position: smoothed.
+    pub(super) position: Vec<f64>,
+    pub(super) speed: Vec<f64>,
+    pub(super) acceleration: Vec<f64>,
+    /// What the contact follows: raw where the sensor moves in steps.
+    pub(super) seen: Vec<f64>,
+    pub(super) decimate: usize,
+    low_pass: Option<ZeroPhase>,
+    already_filtered: bool,
+    resolution: Resolution,
+    strokes: Vec<Stroke>,
+}
+
+impl Recording {
+    /// Prepares a run: smooths the position, differentiates it, finds its strokes.
+    ///
+    /// `hysteresis` and `minimum_travel` (unit of the position) define a stroke.
+    ///
+    /// # Errors
+    /// [`Error`] naming the argument: not finite, too short, or a band above half the sample rate.
+    pub fn new(
+        position: &[f64],
+        sample_rate_hz: f64,
+        band: Band,
+        hysteresis: f64,
+        minimum_travel: f64,
+    ) -> Result<Self, Error> {
+        require_positive("sample_rate_hz", sample_rate_hz)?;
+        require_finite("position", position)?;
+        if position.len() < 16 {
+            return Err(Error::Length {
+                name: "position",
+                expected: "at least 16".into(),
+                got: position.len(),
+            });
+        }
+        let low_pass = band
+            .upper_hz
+            .map(|hz| zero_phase(hz, sample_rate_hz))
+            .transpose()?;
+        // Without a band the kinematics still need one: a fortieth of the sample rate, 25 Hz at 1 kHz.
+        let kinematic_hz = band
+            .upper_hz
+            .map_or(sample_rate_hz / 40.0, |hz| KINEMATICS_OVER_BAND * hz);
+        let smooth = if kinematic_hz < 0.45 * sample_rate_hz {
+            run(&mut zero_phase(kinematic_hz, sample_rate_hz)?, position)?
+        } else {
+            position.to_vec()
+        };
+        let resolution = Resolution::of(position, &smooth);
+        let seen = if resolution.quantised {
+            position.to_vec()
+        } else {
+            smooth.clone()
+        };
+        let strokes = strokes(
+            &smooth,
+            &seen,
+            resolution.step,
+            sample_rate_hz,
+            hysteresis,
+            minimum_travel,
+        );
+        let speed = derivative(&smooth, sample_rate_hz);
+        let acceleration = derivative(&speed, sample_rate_hz);
+        let decimate = band.decimate.unwrap_or_else(|| {
+            band.upper_hz.map_or(1, |hz| {
+                (sample_rate_hz / (SAMPLES_PER_BAND_PERIOD * hz))
+                    .floor()
+                    .max(1.0) as usize
+            })
+        });
+        Ok(Self {
+            sample_rate_hz,
+            position: smooth,
+            speed,
+            acceleration,
+            seen,
+            decimate: decimate.max(1),
+            low_pass,
+            already_filtered: band.already_filtered,
+            resolution,
+            strokes,
+        })
+    }
+
+    /// Samples of the run.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Never: a recording has at least 16 samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// The strokes found.
+    #[must_use]
+    pub fn strokes(&self) -> &[Stroke] {
+        &self.strokes
+    }
+
+    /// The smallest change the position sensor can show.
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        self.resolution.step
+    }
+
+    /// Highest minus lowest position.
+    #[must_use]
+    pub fn range(&self) -> f64 {
+        span(&self.position)
+    }
+
+    /// Every how many samples the comparison keeps one.
+    #[must_use]
+    pub fn decimate(&self) -> usize {
+        self.decimate
+    }
+
+    /// Position, speed and acceleration at the samples that the comparison keeps.
+    #[must_use]
+    pub fn kept(&self) -> [Vec<f64>; 3] {
+        [&self.position, &self.speed, &self.acceleration]
+            .map(|v| v.iter().step_by(self.decimate).copied().collect())
+    }
+
+    /// A measured channel through the comparison's low pass, at the samples that the comparison keeps.
+    ///
+    /// # Errors
+    /// [`Error`] where the channel is not finite or not as long as the run.
+    pub fn measured(&self, channel: &[f64]) -> Result<Vec<f64>, Error> {
+        crate::error::require_same_length("channel", channel, "position", self.len())?;
+        require_finite("channel", channel)?;
+        let full = if self.already_filtered {
+            channel.to_vec()
+        } else {
+            self.filtered(channel.to_vec())?
+        };
+        Ok(full.into_iter().step_by(self.decimate).collect())
+    }
+
+    /// A column through the comparison's low pass, at full rate.
+    pub(super) fn filtered(&self, column: Vec<f64>) -> Result<Vec<f64>, Error> {
+        match &self.low_pass {
+            None => Ok(column),
+            Some(filter) => run(&mut filter.clone(), &column),
+        }
+    }
+}
+
+fn zero_phase(cutoff_hz: f64, sample_rate_hz: f64) -> Result<ZeroPhase, Error> {
+    let design = LowPass::new(
+        POLES,
+        cutoff_hz,
+        sample_rate_hz,
+        Passes::ForwardBackward,
+        CutoffAt::PerPass,
+    )?;
+    ZeroPhase::new(design, Edges::default())
+}
+
+fn run(filter: &mut ZeroPhase, x: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut out = vec![0.0; x.len()];
+    filter.apply(x, &mut out)?;
+    Ok(out)
+}

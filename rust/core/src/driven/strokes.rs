@@ -1,0 +1,143 @@
+//! Strokes: the motion between two reversals, with the dwell that follows it.
+
+/// One stroke of a recording, in samples of the smoothed position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    /// The last sample at rest before the motion starts.
+    pub onset: usize,
+    /// The sample where the motion turns.
+    pub turn: usize,
+    /// +1 where the position increases, -1 where it decreases.
+    pub direction: f64,
+    /// By how much the instant of the motion's start is uncertain: the time the sensor needs for half a step then.
+    pub onset_uncertainty_s: f64,
+}
+
+/// The turning points of `position`: extremes that are followed by a return of more than `hysteresis`.
+fn turns(position: &[f64], hysteresis: f64) -> Vec<usize> {
+    let (mut high, mut low) = (0, 0);
+    let mut direction = 0.0;
+    let mut found = Vec::new();
+    for (i, x) in position.iter().enumerate() {
+        if *x > position[high] {
+            high = i;
+        }
+        if *x < position[low] {
+            low = i;
+        }
+        if direction >= 0.0 && position[high] - x > hysteresis {
+            found.push(high);
+            direction = -1.0;
+            low = i;
+        } else if direction <= 0.0 && x - position[low] > hysteresis {
+            found.push(low);
+            direction = 1.0;
+            high = i;
+        }
+    }
+    if direction > 0.0 {
+        found.push(high);
+    } else if direction < 0.0 {
+        found.push(low);
+    }
+    found
+}
+
+/// Drops pairs of turning points that enclose less than `minimum_travel`, so that a small hesitation stays part of
+/// the stroke it interrupts.
+fn merge_short(position: &[f64], mut turns: Vec<usize>, minimum_travel: f64) -> Vec<usize> {
+    while turns.len() > 1 {
+        let travel = |k: usize| (position[turns[k + 1]] - position[turns[k]]).abs();
+        let Some(short) = (0..turns.len() - 1)
+            .filter(|k| travel(*k) < minimum_travel)
+            .min_by(|a, b| travel(*a).total_cmp(&travel(*b)))
+        else {
+            break;
+        };
+        if short == 0 {
+            turns.remove(0);
+        } else if short + 2 == turns.len() {
+            turns.pop();
+        } else {
+            turns.drain(short..short + 2);
+        }
+    }
+    turns
+}
+
+/// Finds the strokes of a record.
+///
+/// `seen` is the position as the contact follows it (raw for an encoder), `step` its resolution; onsets are looked
+/// for on it, turning points on `smooth`.
+pub fn strokes(
+    smooth: &[f64],
+    seen: &[f64],
+    step: f64,
+    sample_rate_hz: f64,
+    hysteresis: f64,
+    minimum_travel: f64,
+) -> Vec<Stroke> {
+    let turns = merge_short(smooth, turns(smooth, hysteresis), minimum_travel);
+    turns
+        .windows(2)
+        .map(|pair| {
+            let direction = (smooth[pair[1]] - smooth[pair[0]]).signum();
+            let (onset, uncertain) = onset(&seen[pair[0]..=pair[1]], direction, step);
+            Stroke {
+                onset: pair[0] + onset,
+                turn: pair[1],
+                direction,
+                onset_uncertainty_s: uncertain as f64 / sample_rate_hz / 2.0,
+            }
+        })
+        .collect()
+}
+
+/// Where the motion of one stroke starts, and the samples between its first and second step of the sensor.
+///
+/// Looked for backward from the point where the motion is a few steps under way, so that a flutter of one step
+/// during the dwell is not taken for the start.
+fn onset(seen: &[f64], direction: f64, step: f64) -> (usize, usize) {
+    let start = seen[0];
+    let travelled = |i: usize| (seen[i] - start) * direction;
+    let under_way = (0..seen.len())
+        .find(|i| travelled(*i) > 3.5 * step)
+        .unwrap_or(seen.len() - 1);
+    let last_at_or_below = |level: f64| {
+        (0..=under_way)
+            .rev()
+            .find(|i| travelled(*i) <= level * step)
+            .unwrap_or(0)
+    };
+    let first_step = last_at_or_below(0.5);
+    let second_step = last_at_or_below(1.5);
+    (first_step, second_step.saturating_sub(first_step).max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::strokes;
+
+    #[test]
+    fn dwells_belong_to_the_stroke_before_them() {
+        let mut x = vec![0.0; 10];
+        x.extend((0..=100).map(|i| f64::from(i) * 0.1));
+        x.extend(vec![10.0; 50]);
+        x.extend((0..=100).map(|i| 10.0 - f64::from(i) * 0.1));
+        let found = strokes(&x, &x, 0.1, 100.0, 1.0, 5.0);
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].direction, 1.0);
+        assert_eq!(found[1].direction, -1.0);
+        assert!((160..=162).contains(&found[1].onset), "{}", found[1].onset);
+        assert_eq!(found[1].onset_uncertainty_s, 0.005);
+    }
+
+    #[test]
+    fn a_hesitation_does_not_split_a_stroke() {
+        let up = (0..100).map(|i| f64::from(i) * 0.1);
+        let back = (0..15).map(|i| 9.9 - f64::from(i) * 0.1);
+        let on = (0..100).map(|i| 8.5 + f64::from(i) * 0.1);
+        let x: Vec<f64> = up.chain(back).chain(on).collect();
+        assert_eq!(strokes(&x, &x, 0.1, 100.0, 1.0, 5.0).len(), 1);
+    }
+}

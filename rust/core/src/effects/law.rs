@@ -1,0 +1,89 @@
+//! What a law is: a basis that is linear in its coefficients once the inner parameters are given.
+
+use super::card::Card;
+use super::lane::Lane;
+
+/// The state of motion that a law may look at. Position and speed are rad and rad/s on a rig, m and m/s on an axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<L> {
+    /// Position.
+    pub position: L,
+    /// Speed.
+    pub speed: L,
+    /// Acceleration.
+    pub acceleration: L,
+    /// Seconds since the start of the file.
+    pub time_s: L,
+}
+
+/// The one friction state of a contact, as the effects of a model shape it.
+///
+/// The state is `s = luz(u, gap / 2) / breakaway` with the stop operator `u` of radius `breakaway + gap / 2`: without
+/// a gap the elastic-plastic friction state, with one the friction behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Travel from rest to full friction.
+    pub breakaway: f64,
+    /// Whether the break-away follows Dahl's exponential instead of a straight line.
+    pub exponential: bool,
+    /// Full width of the gap in front of the friction.
+    pub gap: f64,
+}
+
+/// The law of one effect. Written once, used by driven fits, time steps and batches.
+pub trait Law {
+    /// Everything there is to know besides the law.
+    const CARD: Card;
+    /// How many columns the basis has.
+    const COLUMNS: usize;
+
+    /// Writes the `COLUMNS` basis values for one state of motion.
+    fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]);
+
+    /// Shapes the friction state; most effects leave it alone.
+    fn contact(_inner: &[f64], _contact: &mut Contact) {}
+
+    /// By how many seconds the sensor is late; most effects say nothing about it.
+    fn delay_s(_inner: &[f64]) -> f64 {
+        0.0
+    }
+}
+
+/// An effect of the catalogue: a law behind function pointers, chosen by name at run time.
+#[derive(Debug, Clone, Copy)]
+pub struct Effect {
+    /// Its card.
+    pub card: &'static Card,
+    /// How many columns the basis has.
+    pub columns: usize,
+    /// The basis for one sample.
+    pub basis: fn(&Motion<f64>, &[f64], &mut [f64]),
+    /// See [`Law::contact`].
+    pub contact: fn(&[f64], &mut Contact),
+    /// See [`Law::delay_s`].
+    pub delay_s: fn(&[f64]) -> f64,
+}
+
+impl Effect {
+    /// The catalogue entry of a law.
+    #[must_use]
+    pub const fn of<T: Law>() -> Self {
+        Self {
+            card: &T::CARD,
+            columns: T::COLUMNS,
+            basis: T::basis::<f64>,
+            contact: T::contact,
+            delay_s: T::delay_s,
+        }
+    }
+
+    /// How many inner parameters the law has.
+    #[must_use]
+    pub fn inner(&self) -> usize {
+        self.card
+            .parameters
+            .iter()
+            .filter(|p| matches!(p.role, super::card::Role::Inner(_)))
+            .count()
+    }
+}

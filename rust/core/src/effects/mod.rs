@@ -1,0 +1,91 @@
+//! The effects: one law per file, its card beside it, and the list of them all.
+//!
+//! To add one, write its file and name it in [`CATALOGUE`].
+
+mod card;
+mod lane;
+mod law;
+
+mod asymmetric_viscous;
+mod coulomb;
+mod decoy_angle;
+mod decoy_time;
+mod delay;
+mod drift;
+mod freeplay;
+mod inertia;
+mod offset;
+mod once_per_rev;
+mod presliding;
+mod stiffness;
+mod stribeck;
+mod viscous;
+
+pub use card::{Card, Grid, Kind, Parameter, Role};
+pub use lane::Lane;
+pub use law::{Contact, Effect, Law, Motion};
+
+use crate::Error;
+
+/// Every effect, in the order in which lists and reports show them.
+pub static CATALOGUE: &[Effect] = &[
+    Effect::of::<offset::Offset>(),
+    Effect::of::<coulomb::Coulomb>(),
+    Effect::of::<viscous::Viscous>(),
+    Effect::of::<asymmetric_viscous::AsymmetricViscous>(),
+    Effect::of::<stribeck::Stribeck>(),
+    Effect::of::<presliding::Presliding>(),
+    Effect::of::<freeplay::Freeplay>(),
+    Effect::of::<stiffness::Stiffness>(),
+    Effect::of::<inertia::Inertia>(),
+    Effect::of::<once_per_rev::OncePerRev>(),
+    Effect::of::<delay::Delay>(),
+    Effect::of::<drift::Drift>(),
+    Effect::of::<decoy_time::DecoyTime>(),
+    Effect::of::<decoy_angle::DecoyAngle>(),
+];
+
+/// Looks an effect up by name.
+///
+/// # Errors
+/// [`Error::Unknown`] with the names that exist.
+pub fn find(name: &str) -> Result<&'static Effect, Error> {
+    CATALOGUE
+        .iter()
+        .find(|e| e.card.name == name)
+        .ok_or_else(|| Error::Unknown {
+            what: "effect",
+            name: name.to_owned(),
+            known: CATALOGUE
+                .iter()
+                .map(|e| e.card.name)
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CATALOGUE, Role};
+
+    #[test]
+    fn every_card_lists_as_many_linear_parameters_as_its_law_has_columns() {
+        for effect in CATALOGUE {
+            let linear = effect
+                .card
+                .parameters
+                .iter()
+                .filter(|p| !matches!(p.role, Role::Inner(_)))
+                .count();
+            assert_eq!(linear, effect.columns, "{}", effect.card.name);
+        }
+    }
+
+    #[test]
+    fn names_are_unique() {
+        let mut names: Vec<_> = CATALOGUE.iter().map(|e| e.card.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), CATALOGUE.len());
+    }
+}
