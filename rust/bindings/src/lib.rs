@@ -4,6 +4,9 @@
 mod driven;
 mod effects;
 mod error;
+mod regression;
+mod signal;
+mod stats;
 
 use pyo3::prelude::*;
 
@@ -15,6 +18,12 @@ mod _core {
     use crate::driven::Recording;
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::regression::{LineSums, fit_line};
+    #[pymodule_export]
+    use crate::signal::{Filter, LowPass, zero_phase};
+    #[pymodule_export]
+    use crate::stats::Moments;
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

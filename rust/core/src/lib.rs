@@ -7,5 +7,8 @@ pub mod driven;
 pub mod effects;
 pub mod error;
 pub mod projections;
+pub mod regression;
+pub mod signal;
+pub mod stats;
 
 pub use error::Error;
