@@ -1,6 +1,6 @@
 //! `luztar._core.Recording`: a run prepared for driven fits.
 
-use luztar::driven::{Band, Recording as Core, Term};
+use luztar::driven::{Band, Recording as Core, Term, Travel};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -23,7 +23,7 @@ pub struct Recording(Core);
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, already_filtered, hysteresis, minimum_travel))]
+    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, already_filtered, hysteresis, minimum_travel, turn_rad_per_unit))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -34,6 +34,7 @@ impl Recording {
         already_filtered: bool,
         hysteresis: f64,
         minimum_travel: f64,
+        turn_rad_per_unit: f64,
     ) -> PyResult<Self> {
         let x = position.as_slice()?;
         let band = Band {
@@ -41,8 +42,13 @@ impl Recording {
             decimate,
             already_filtered,
         };
+        let travel = Travel {
+            hysteresis,
+            minimum: minimum_travel,
+            turn_rad_per_unit,
+        };
         let core = py
-            .detach(|| Core::new(x, sample_rate_hz, band, hysteresis, minimum_travel))
+            .detach(|| Core::new(x, sample_rate_hz, band, travel))
             .map_err(CoreError)?;
         Ok(Self(core))
     }

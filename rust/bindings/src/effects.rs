@@ -29,6 +29,7 @@ fn card<'py>(py: Python<'py>, card: &Card) -> PyResult<Bound<'py, PyDict>> {
         dict.set_item(key, text)?;
     }
     dict.set_item("behind_gap", card.behind_gap)?;
+    dict.set_item("per_turn", card.per_turn)?;
     dict.set_item("needs", card.needs)?;
     let parameters = card
         .parameters

@@ -9,5 +9,5 @@ mod resolution;
 mod strokes;
 
 pub use columns::{Term, inner_of};
-pub use recording::{Band, Recording};
+pub use recording::{Band, Recording, Travel};
 pub use strokes::Stroke;

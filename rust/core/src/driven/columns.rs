@@ -96,6 +96,13 @@ impl Recording {
                 interval: format!("[0, {})", terms.len()),
             })?;
             let effect = inner_of(term)?;
+            if effect.card.per_turn && self.turn_rad_per_unit.is_nan() {
+                return Err(Error::Unknown {
+                    what: "turn of",
+                    name: term.effect.clone(),
+                    known: "give the pitch".into(),
+                });
+            }
             let mut raw = self.basis(effect, &term.inner);
             if effect.card.kind == Kind::FrictionLevel {
                 let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
@@ -150,6 +157,7 @@ impl Recording {
                 position: self.position[i],
                 speed: self.speed[i],
                 acceleration: self.acceleration[i],
+                turn_rad: self.position[i] * self.turn_rad_per_unit,
                 time_s: i as f64 / self.sample_rate_hz,
             };
             (effect.basis)(&motion, inner, &mut out);

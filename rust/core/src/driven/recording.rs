@@ -29,6 +29,17 @@ pub struct Band {
     pub already_filtered: bool,
 }
 
+/// What a structure says about its position channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Travel {
+    /// A reversal counts once the position has returned by this much.
+    pub hysteresis: f64,
+    /// A stroke has at least this travel.
+    pub minimum: f64,
+    /// Radians of the turning part per unit of position: 1 on a rig, `2 pi / pitch` on an axis, NaN where unknown.
+    pub turn_rad_per_unit: f64,
+}
+
 /// A prepared run. Positions are rad on a rig, m on an axis; everything else follows from that.
 #[derive(Debug, Clone)]
 pub struct Recording {
@@ -40,6 +51,7 @@ pub struct Recording {
     /// What the contact follows: raw where the sensor moves in steps.
     pub(super) seen: Vec<f64>,
     pub(super) decimate: usize,
+    pub(super) turn_rad_per_unit: f64,
     low_pass: Option<ZeroPhase>,
     already_filtered: bool,
     resolution: Resolution,
@@ -49,16 +61,13 @@ pub struct Recording {
 impl Recording {
     /// Prepares a run: smooths the position, differentiates it, finds its strokes.
     ///
-    /// `hysteresis` and `minimum_travel` (unit of the position) define a stroke.
-    ///
     /// # Errors
     /// [`Error`] naming the argument: not finite, too short, or a band above half the sample rate.
     pub fn new(
         position: &[f64],
         sample_rate_hz: f64,
         band: Band,
-        hysteresis: f64,
-        minimum_travel: f64,
+        travel: Travel,
     ) -> Result<Self, Error> {
         require_positive("sample_rate_hz", sample_rate_hz)?;
         require_finite("position", position)?;
@@ -112,6 +121,7 @@ impl Recording {
             acceleration,
             seen,
             decimate: decimate.max(1),
+            turn_rad_per_unit: travel.turn_rad_per_unit,
             low_pass,
             already_filtered: band.already_filtered,
             resolution,

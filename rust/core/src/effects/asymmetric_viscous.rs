@@ -25,6 +25,7 @@ impl Law for AsymmetricViscous {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         }],
+        per_turn: false,
         needs: None,
     };
     const COLUMNS: usize = 1;

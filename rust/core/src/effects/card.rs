@@ -144,6 +144,8 @@ pub struct Card {
     pub source: &'static str,
     /// Its parameters: linear ones in the order of the basis, then inner ones.
     pub parameters: &'static [Parameter],
+    /// Whether the law counts turns, so that an axis needs its pitch.
+    pub per_turn: bool,
     /// Which effect must be in the model for this one to make sense, if any.
     pub needs: Option<&'static str>,
 }

@@ -35,6 +35,7 @@ impl Law for Coulomb {
                 high: f64::INFINITY,
             },
         ],
+        per_turn: false,
         needs: None,
     };
     const COLUMNS: usize = 1;

@@ -25,6 +25,7 @@ impl Law for Delay {
             low: -0.03,
             high: 0.1,
         }],
+        per_turn: false,
         needs: None,
     };
     const COLUMNS: usize = 0;

@@ -27,6 +27,7 @@ impl Law for Freeplay {
             low: 0.0,
             high: f64::INFINITY,
         }],
+        per_turn: false,
         needs: Some("coulomb"),
     };
     const COLUMNS: usize = 0;

@@ -12,6 +12,8 @@ pub struct Motion<L> {
     pub speed: L,
     /// Acceleration.
     pub acceleration: L,
+    /// Angle of the turning part, rad: the position of a rig, `2 pi x / pitch` of an axis.
+    pub turn_rad: L,
     /// Seconds since the start of the file.
     pub time_s: L,
 }

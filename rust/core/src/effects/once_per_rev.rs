@@ -35,12 +35,13 @@ impl Law for OncePerRev {
                 high: std::f64::consts::PI,
             },
         ],
+        per_turn: true,
         needs: None,
     };
     const COLUMNS: usize = 2;
 
     fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
-        out[0] = motion.position.sin();
-        out[1] = motion.position.cos();
+        out[0] = motion.turn_rad.sin();
+        out[1] = motion.turn_rad.cos();
     }
 }

@@ -37,6 +37,7 @@ impl Law for Presliding {
                 high: 1.0,
             },
         ],
+        per_turn: false,
         needs: Some("coulomb"),
     };
     const COLUMNS: usize = 0;

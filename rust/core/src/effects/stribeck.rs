@@ -35,6 +35,7 @@ impl Law for Stribeck {
                 high: f64::INFINITY,
             },
         ],
+        per_turn: false,
         needs: Some("coulomb"),
     };
     const COLUMNS: usize = 1;

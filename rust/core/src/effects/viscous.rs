@@ -25,6 +25,7 @@ impl Law for Viscous {
             low: 0.0,
             high: f64::INFINITY,
         }],
+        per_turn: false,
         needs: None,
     };
     const COLUMNS: usize = 1;

@@ -1,0 +1,12 @@
+"""Models of a mechanism: a structure and the effects in it."""
+
+from .cards import Card as Card
+from .cards import Parameter as Parameter
+from .cards import card as card
+from .cards import cards as cards
+from .file import load as load
+from .model import Comparison as Comparison
+from .model import Effect as Effect
+from .model import Model as Model
+from .structure import STRUCTURES as STRUCTURES
+from .structure import Structure as Structure

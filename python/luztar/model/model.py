@@ -1,0 +1,183 @@
+"""A model: a structure, its effects, and what is known beforehand. Immutable; ``model + effect`` makes a new one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ModelError
+from .cards import card
+from .structure import Structure, structure
+
+if TYPE_CHECKING:
+    import os
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect with start values for some of its parameters; made by ``luztar.effects.Stribeck(...)``."""
+
+    name: str
+    start: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How model and measurement are compared.
+
+    Attributes
+    ----------
+    band_hz : float or None
+        Upper edge of the band; None takes the structure's default.
+    filter_already_applied : bool
+        Whether the measured torque or force has been low-passed by this band before.
+    decimate : int or None
+        Keep every n-th sample; None chooses from the band.
+    """
+
+    band_hz: float | None = None
+    filter_already_applied: bool = False
+    decimate: int | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """A structure with effects.
+
+    Attributes
+    ----------
+    structure_name : str
+        ``rig`` (angle in, torque out) or ``axis`` (position in, force out).
+    effects : tuple of str
+        Names of the catalogue.
+    known : mapping
+        Parameters that are given and not estimated, ``{"coulomb.level_nm": 0.7}``; ``pitch_m`` of an axis.
+    start : mapping
+        Start values of inner parameters.
+    comparison : Comparison
+    """
+
+    structure_name: str
+    effects: tuple[str, ...]
+    known: Mapping[str, float] = field(default_factory=dict)
+    start: Mapping[str, float] = field(default_factory=dict)
+    comparison: Comparison = Comparison()
+
+    def __post_init__(self) -> None:
+        structure(self.structure_name)
+        object.__setattr__(self, "effects", tuple(self.effects))
+        object.__setattr__(self, "known", MappingProxyType(dict(self.known)))
+        object.__setattr__(self, "start", MappingProxyType(dict(self.start)))
+        seen: set[str] = set()
+        for name in self.effects:
+            needed = card(name, self.structure_name)
+            if name in seen:
+                raise ModelError(f"the effect '{name}' is listed twice", "effects", "Remove one of them.")
+            seen.add(name)
+            if needed.needs and needed.needs not in self.effects:
+                raise ModelError(f"'{name}' needs '{needed.needs}'", "effects", f"Add '{needed.needs}' to the effects.")
+        for where, values in (("known", self.known), ("start", self.start)):
+            for key, value in values.items():
+                self._check(where, key, value)
+        band, decimate = self.comparison.band_hz, self.comparison.decimate
+        if band is not None and not (math.isfinite(band) and band > 0):
+            raise ModelError(f"the band is {band} Hz", "comparison.band_hz", "Give a frequency above 0.")
+        if decimate is not None and decimate < 1:
+            raise ModelError(f"decimate is {decimate}", "comparison.decimate", "Give a whole number from 1.")
+
+    def _check(self, where: str, key: str, value: float) -> None:
+        if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
+            raise ModelError(f"{key} is {value!r}", where, "Give a finite number.")
+        if key == "pitch_m" and self.structure_name == "axis":
+            if value <= 0:
+                raise ModelError(f"pitch_m is {value}", where, "Give the travel per turn, above 0.")
+            return
+        effect, _, parameter = key.partition(".")
+        if effect not in self.effects:
+            listed = ", ".join(self.effects)
+            raise ModelError(f"'{key}' belongs to no effect of the model", where, f"Its effects are: {listed}.")
+        parameters = {p.key: p for p in card(effect, self.structure_name).parameters}
+        if parameter not in parameters:
+            raise ModelError(f"'{effect}' has no '{parameter}'", where, f"It has: {', '.join(parameters) or 'none'}.")
+        low, high = parameters[parameter].low, parameters[parameter].high
+        if not low <= value <= high:
+            raise ModelError(f"{key} is {value}", where, f"It must lie between {low:g} and {high:g}.")
+
+    @classmethod
+    def rig(cls, **comparison: Any) -> Model:
+        """Return the model of a friction rig: offset, Coulomb and viscous friction."""
+        return cls("rig", structure("rig").effects, comparison=Comparison(**comparison))
+
+    @classmethod
+    def axis(cls, *, pitch_m: float | None = None, **comparison: Any) -> Model:
+        """Return the model of a driven axis: offset, Coulomb and viscous friction, inertia."""
+        known = {} if pitch_m is None else {"pitch_m": pitch_m}
+        return cls("axis", structure("axis").effects, known, comparison=Comparison(**comparison))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Model:
+        """Read a model file (TOML). See ``docs/model-files.md``."""
+        from .file import load
+
+        return load(path)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the model as a TOML file."""
+        from .file import save
+
+        save(self, path)
+
+    @property
+    def structure(self) -> Structure:
+        """The structure with its channels."""
+        return structure(self.structure_name)
+
+    @property
+    def band_hz(self) -> float:
+        """Upper edge of the comparison."""
+        return self.comparison.band_hz or self.structure.band_hz
+
+    def with_band(self, band_hz: float | None) -> Model:
+        """Return the same model with another comparison band; None leaves it as it is."""
+        if band_hz is None:
+            return self
+        return replace(self, comparison=replace(self.comparison, band_hz=band_hz))
+
+    def __add__(self, other: str | Effect | Iterable[str]) -> Model:
+        """Return the model with an effect more (a name, or ``luztar.effects.X(...)``)."""
+        if isinstance(other, str):
+            other = Effect(other)
+        if isinstance(other, Effect):
+            start = {**self.start, **{f"{other.name}.{k}": v for k, v in other.start.items()}}
+            return replace(self, effects=(*self.effects, other.name), start=start)
+        return NotImplemented
+
+    def __sub__(self, name: str) -> Model:
+        """Return the model without an effect."""
+        if name not in self.effects:
+            raise ModelError(f"'{name}' is not in the model", "effects", f"It has: {', '.join(self.effects)}.")
+        drop = f"{name}."
+        return replace(
+            self,
+            effects=tuple(e for e in self.effects if e != name),
+            known={k: v for k, v in self.known.items() if not k.startswith(drop)},
+            start={k: v for k, v in self.start.items() if not k.startswith(drop)},
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the model as plain JSON values, in the layout of a model file."""
+        return {
+            "schema": 1,
+            "structure": self.structure_name,
+            "effects": list(self.effects),
+            "known": dict(self.known),
+            "start": dict(self.start),
+            "comparison": {
+                "band_hz": self.band_hz,
+                "filter_already_applied": self.comparison.filter_already_applied,
+                "decimate": self.comparison.decimate,
+            },
+        }

@@ -1,0 +1,65 @@
+"""The structures a model can have: which channel drives it and which it explains."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import ModelError
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What is given, what is explained, and how a stroke is told from a hesitation.
+
+    Attributes
+    ----------
+    name : str
+    motion, effort : str
+        The channel that drives the model and the one it explains.
+    motion_unit, effort_unit : str
+    effects : tuple of str
+        The default model.
+    band_hz : float
+        Upper edge of the comparison where the model file does not say.
+    """
+
+    name: str
+    motion: str
+    effort: str
+    motion_unit: str
+    effort_unit: str
+    effects: tuple[str, ...]
+    band_hz: float
+
+    def hysteresis(self, motion_range: float) -> float:
+        """Return how far the motion must come back to count as a reversal, in its unit."""
+        return math.radians(1.0) if self.name == "rig" else 0.01 * motion_range
+
+    def minimum_travel(self, motion_range: float) -> float:
+        """Return the least travel of a stroke, in the motion's unit."""
+        return math.radians(5.0) if self.name == "rig" else 0.05 * motion_range
+
+    @property
+    def rest_speed(self) -> float | None:
+        """The speed below which the mechanism counts as at rest or reversing; None: a share of the top speed."""
+        return math.radians(2.0) if self.name == "rig" else None
+
+
+STRUCTURES = {
+    "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0),
+    "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0),
+}
+
+
+def structure(name: str) -> Structure:
+    """Return a structure by name.
+
+    Raises
+    ------
+    ModelError
+        Where there is none of that name.
+    """
+    if name not in STRUCTURES:
+        raise ModelError(f"there is no structure '{name}'", "structure", f"Known: {', '.join(STRUCTURES)}.")
+    return STRUCTURES[name]
