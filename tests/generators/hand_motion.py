@@ -32,7 +32,7 @@ def smooth_wobble(time_s: np.ndarray, rng: np.random.Generator, frequencies_hz: 
     wobble = np.zeros_like(time_s)
     for frequency_hz in rng.uniform(*frequencies_hz, size=4):
         wobble += rng.uniform(0.4, 1.0) * np.sin(2.0 * np.pi * (frequency_hz * time_s + rng.random()))
-    return wobble / max(1.0, float(np.max(np.abs(wobble))))
+    return wobble / max(1e-9, float(np.max(np.abs(wobble))))
 
 
 def stroke_speed(
@@ -51,12 +51,12 @@ def stroke_speed(
     """
     low, high = speeds
     ratio = min(rng.uniform(*wobble_ratio), np.sqrt(high / low))
-    centre = np.exp(rng.uniform(np.log(low * ratio), np.log(high / ratio)))
+    centre = rng.uniform(low * ratio, max(low * ratio, high / ratio))
     guess_s = distance / centre
     # The shape is drawn over a guessed duration; stretching time afterwards makes the distance right and
     # leaves the speeds alone.
     u = np.linspace(0.0, 1.0, 4096)
-    shape = centre * ratio ** smooth_wobble(u * guess_s, rng, (0.12, 0.9))
+    shape = centre * ratio ** smooth_wobble(u * guess_s, rng, (0.2, 1.4))
     up_s, down_s = rng.uniform(*ramp_s, size=2)
     fade = min(1.0, 0.8 * guess_s / (up_s + down_s))
     shape *= smooth_step(u * guess_s / (up_s * fade)) * smooth_step((1.0 - u) * guess_s / (down_s * fade))
@@ -102,8 +102,8 @@ def hand_motion(
     first_dwell_s: tuple[float, float] = (0.75, 0.9),
     dwell_s: tuple[float, float] = (0.3, 0.9),
     last_dwell_s: tuple[float, float] = (0.4, 0.8),
-    wobble_ratio: tuple[float, float] = (1.15, 1.9),
-    ramp_s: tuple[float, float] = (0.2, 0.4),
+    wobble_ratio: tuple[float, float] = (1.5, 2.4),
+    ramp_s: tuple[float, float] = (0.2, 0.35),
     slow_breakaway: bool = False,
     small_reversals: int = 0,
     small_reversal_deg: tuple[float, float] = (1.5, 8.0),
