@@ -94,10 +94,11 @@ def load(path: str | os.PathLike[str]) -> Model:
 
 def save(model: Model, path: str | os.PathLike[str]) -> None:
     """Write a model as a TOML file that :func:`load` reads back."""
+    quoted = ", ".join(f'"{e}"' for e in model.effects)
     lines = [
         f"schema = {SCHEMA}",
         f'structure = "{model.structure_name}"',
-        f"effects = [{', '.join(f'"{e}"' for e in model.effects)}]" if model.effects else "effects = []",
+        f"effects = [{quoted}]",
     ]
     for name, table in (("known", model.known), ("start", model.start)):
         if table:

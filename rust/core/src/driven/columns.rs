@@ -1,6 +1,6 @@
 //! The columns of a model: what each coefficient multiplies, filtered and decimated like the measurement.
 
-use super::contact::{engagement, friction_state};
+use super::contact::{engagement, friction_state, hold_at_rest};
 use super::kinematics::derivative;
 use super::recording::Recording;
 use crate::Error;
@@ -106,7 +106,10 @@ impl Recording {
             let mut raw = self.basis(effect, &term.inner);
             if effect.card.kind == Kind::FrictionLevel {
                 let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
-                raw.iter_mut().for_each(|column| multiply(column, state));
+                for column in &mut raw {
+                    hold_at_rest(column, &contact, &self.seen);
+                    multiply(column, state);
+                }
             } else if effect.card.behind_gap && contact.gap > 0.0 {
                 let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
                 let engaged = engaged.get_or_insert_with(|| engagement(&contact, state));

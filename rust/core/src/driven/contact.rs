@@ -39,6 +39,24 @@ pub fn friction_state(contact: &Contact, position: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// Lets a level of friction take effect as the contact slides: it approaches its value over the travel of the
+/// break-away and is held at rest, where nothing slides.
+///
+/// This is what a bristle does whose bound changes while it is loaded (LuGre, Dahl): a level that rises as the motion
+/// stops reaches only what the last travel allowed, and the torque at rest is the one the motion ended with.
+pub fn hold_at_rest(level: &mut [f64], contact: &Contact, position: &[f64]) {
+    let mut held = level.first().copied().unwrap_or(0.0);
+    let mut last = position.first().copied().unwrap_or(0.0);
+    for (value, x) in level.iter_mut().zip(position) {
+        let travel = (x - last).abs();
+        last = *x;
+        if travel > 0.0 {
+            held += (*value - held) * -(-travel / contact.breakaway).exp_m1();
+        }
+        *value = held;
+    }
+}
+
 /// How much of what is behind the gap is felt at every sample, in `[0, 1]`: 1 throughout without a gap.
 pub fn engagement(contact: &Contact, state: &[f64]) -> Option<Vec<f64>> {
     (contact.gap > 0.0).then(|| state.iter().map(|s| s.abs().min(1.0)).collect())
@@ -46,7 +64,7 @@ pub fn engagement(contact: &Contact, state: &[f64]) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::friction_state;
+    use super::{friction_state, hold_at_rest};
     use crate::effects::Contact;
 
     const SHARP: Contact = Contact {
@@ -82,6 +100,16 @@ mod tests {
             "breaking away on the other side"
         );
         assert!((s[5] + 1.0).abs() < 1e-12, "sliding on the other side");
+    }
+
+    #[test]
+    fn a_level_is_held_at_rest_and_followed_while_sliding() {
+        let mut level = [1.0, 2.0, 3.0, 3.0, 5.0];
+        hold_at_rest(&mut level, &SHARP, &[0.0, 10.0, 10.0, 10.0, 20.0]);
+        // a hundred break-aways of travel leave exp(-100) of the difference
+        for (a, b) in level.iter().zip([1.0, 2.0, 2.0, 2.0, 5.0]) {
+            assert!((a - b).abs() < 1e-14, "{level:?}");
+        }
     }
 
     #[test]

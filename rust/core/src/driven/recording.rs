@@ -102,8 +102,8 @@ impl Recording {
             &seen,
             resolution.step,
             sample_rate_hz,
-            hysteresis,
-            minimum_travel,
+            travel.hysteresis,
+            travel.minimum,
         );
         let speed = derivative(&smooth, sample_rate_hz);
         let acceleration = derivative(&speed, sample_rate_hz);

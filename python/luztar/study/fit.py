@@ -1,0 +1,228 @@
+"""Fitting a model to runs: coefficients by least squares, inner parameters by profile, held-out prediction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import ModelError
+from ..model import Model, card
+from .equations import Weights
+from .floor import NoiseFloor, friction_level, noise_floor
+from .folds import Folds
+from .intervals import Estimate, estimates
+from .misfit import Misfit, misfit
+from .prepare import Prepared, prepare
+from .profile import Problem, State, owners, state
+from .search import Search
+from .terms import start_terms
+
+if TYPE_CHECKING:
+    from ..measurement import Run
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model with its error, as ``luztar.fit`` returns it.
+
+    Attributes
+    ----------
+    model : Model
+    run_names, held_out_names : tuple of str
+    parameters : dict of str to Estimate
+        Keyed ``effect.parameter``, 95 % intervals clustered by stroke.
+    error : Misfit
+    noise_floor : NoiseFloor
+    runs, held_out : tuple of Prepared
+        The prepared runs.
+    predicted, held_out_predicted : tuple of ndarray
+        The model's torque or force at the kept samples: of every run as fitted, and of every held-out run, or of
+        every run from the others.
+    """
+
+    model: Model
+    run_names: tuple[str, ...]
+    held_out_names: tuple[str, ...]
+    parameters: dict[str, Estimate]
+    error: Misfit
+    noise_floor: NoiseFloor
+    runs: tuple[Prepared, ...] = field(repr=False)
+    held_out: tuple[Prepared, ...] = field(repr=False)
+    predicted: tuple[np.ndarray, ...] = field(repr=False)
+    held_out_predicted: tuple[np.ndarray, ...] = field(repr=False)
+    problem: Problem = field(repr=False)
+    search: Search = field(repr=False)
+
+    @property
+    def state(self) -> State:
+        """The fitted state: terms, columns, normal equations."""
+        assert self.search.best is not None
+        return self.search.best
+
+    @property
+    def residual(self) -> tuple[np.ndarray, ...]:
+        """Measured less modelled, per run, at the kept samples."""
+        return tuple(r.effort - p for r, p in zip(self.runs, self.predicted, strict=True))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit as the JSON interface prints it."""
+        return {
+            "schema": 1,
+            "structure": self.model.structure_name,
+            "effects": list(self.model.effects),
+            "band_hz": self.model.band_hz,
+            "noise_floor": self.noise_floor.to_dict(),
+            "error": self.error.to_dict(),
+            "parameters": {k: v.to_dict() for k, v in self.parameters.items()},
+        }
+
+    def __str__(self) -> str:
+        from .words import fit_text
+
+        return fit_text(self)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f"<pre>{escape(str(self))}</pre>"
+
+    def figure(self) -> Any:
+        """Return a plotly figure: measured and modelled torque over the motion."""
+        from ..report.figures import loops
+
+        return loops(self)
+
+
+def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> Fit:
+    """Fit a model to runs.
+
+    Parameters
+    ----------
+    model : Model
+    runs : sequence of Run
+        What coefficients and inner parameters are fitted to.
+    held_out : sequence of Run
+        Only predicted. Without any, each run is predicted from the others, a single run by its strokes in folds.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    MeasurementError, ModelError
+        Data that cannot be used, or a model that does not fit the structure of the data.
+    """
+    unseen = prepare(held_out, model) if len(held_out) else ()
+    return fit_prepared(model, prepare(runs, model), unseen)
+
+
+def fit_prepared(
+    model: Model,
+    runs: tuple[Prepared, ...],
+    unseen: tuple[Prepared, ...] = (),
+    floor: NoiseFloor | None = None,
+) -> Fit:
+    """Fit a model to prepared runs; see :func:`fit`."""
+    unit = model.structure.effort_unit
+    floor = floor or noise_floor(runs, unit)
+    level = max(friction_level(runs), 1e-12)
+    problem = Problem(runs, model, Weights(floor.moving_rms, level, model.band_hz), fixed_coefficients(model))
+    first = state(problem, start_terms(model, runs))
+    search = Search(Folds.of(first.blocks))
+    search.visit(first)
+    search.refine(problem)
+    return finish(problem, search, unseen, floor)
+
+
+def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor: NoiseFloor) -> Fit:
+    """Turn a finished search into a :class:`Fit`: predictions, error, parameters."""
+    best = search.best
+    assert best is not None
+    model, runs = problem.model, tuple(problem.runs)
+    predicted = tuple(_predict(r, m, best.coefficients) for r, m in zip(runs, best.made.matrix, strict=True))
+    if unseen:
+        elsewhere = replace(problem, runs=unseen)
+        there = state(elsewhere, best.terms)
+        held = tuple(_predict(r, m, best.coefficients) for r, m in zip(unseen, there.made.matrix, strict=True))
+        held_runs = unseen
+    else:
+        held, held_runs = _folded(problem, search), runs
+    error = misfit(
+        runs,
+        [r.effort - p for r, p in zip(runs, predicted, strict=True)],
+        held_runs,
+        [r.effort - p for r, p in zip(held_runs, held, strict=True)],
+        floor,
+    )
+    return Fit(
+        model=model,
+        run_names=tuple(r.name for r in runs),
+        held_out_names=tuple(r.name for r in unseen),
+        parameters=estimates(problem, best),
+        error=error,
+        noise_floor=floor,
+        runs=runs,
+        held_out=unseen,
+        predicted=predicted,
+        held_out_predicted=held,
+        problem=problem,
+        search=search,
+    )
+
+
+def _predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    # The last column is the measurement less what is known beforehand, so that the difference puts it back.
+    return matrix[:, :-1] @ coefficients + (r.effort - matrix[:, -1])
+
+
+def _folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
+    """Predict every stroke with coefficients that have not seen its fold."""
+    from .equations import solve
+
+    predicted = [r.effort.copy() for r in problem.runs]
+    strokes = [s for r in problem.runs for s in r.strokes]
+    for k, chosen in enumerate(search.fold_states):
+        if chosen is None:
+            continue
+        inside = search.folds.of_stroke == k
+        coefficients = solve(chosen.blocks.gram[~inside].sum(axis=0))
+        for s, here in zip(strokes, inside, strict=True):
+            if here:
+                r, m = problem.runs[s.run], chosen.made.matrix[s.run]
+                predicted[s.run][s.first : s.last] = _predict(r, m, coefficients)[s.first : s.last]
+    return tuple(predicted)
+
+
+def fixed_coefficients(model: Model) -> dict[tuple[str, int], float]:
+    """Return the coefficients of columns that ``known`` gives.
+
+    Raises
+    ------
+    ModelError
+        Where of an amplitude and its phase only one is given.
+    """
+    fixed: dict[tuple[str, int], float] = {}
+    for name in model.effects:
+        linear = card(name, model.structure_name).linear
+        given = [model.known.get(f"{name}.{p.key}") for p in linear]
+        if linear and linear[0].role == "amplitude":
+            amplitude, phase = given
+            if amplitude is None and phase is None:
+                continue
+            if amplitude is None or phase is None:
+                remedy = f"Give both {name}.{linear[0].key} and {name}.{linear[1].key}, or neither."
+                raise ModelError(f"only one of amplitude and phase of {name} is known", "known", remedy)
+            fixed[(name, 0)], fixed[(name, 1)] = amplitude * math.cos(phase), amplitude * math.sin(phase)
+        else:
+            fixed |= {(name, i): v for i, v in enumerate(given) if v is not None}
+    return fixed
+
+
+def columns_of(fitted: Fit) -> list[tuple[str, int]]:
+    """Return (effect, number) for each fitted coefficient."""
+    return [o for o in owners(fitted.state.terms, fitted.model) if o not in fitted.problem.fixed]

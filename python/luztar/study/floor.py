@@ -1,0 +1,184 @@
+"""The noise floor: what a model of this kind could not remove however many effects it had.
+
+A saturated model of the state (position, speed, direction, travel since the reversal, acceleration, slow time) is
+fitted away from the reversal zones. What it leaves where it was fitted is too little, what it leaves on a run it has
+not seen is too much; the floor is between them (root of the mean square) and both are given. Inside the reversal zones
+the instant of the start, known to one step of the sensor, adds its own part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .equations import Blocks, loss, solve
+from .folds import Folds, held_out
+from .prepare import Prepared
+
+# Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
+# +-60 degrees each spans 3.4 degrees, a ninth of it.
+POSITION_HATS = 36
+SPEED_HATS = 6
+# Knots of the hats over travel since the reversal, as shares of the range: a gap or break-away of 0.5 to 12 degrees in
+# 120 shows between the first and the last.
+TRAVEL_KNOTS = (0.0, 0.004, 0.008, 0.015, 0.022, 0.03, 0.04, 0.055, 0.075, 0.1, 0.15)
+# A ridge far below one sample's weight keeps hats that no sample touches from making the equations singular.
+RIDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class NoiseFloor:
+    """The noise floor of a set of runs.
+
+    Attributes
+    ----------
+    rms : float
+        Over all samples of the comparison, reversal zones included.
+    low, high : float
+        What the saturated model leaves where it was fitted, and on what it has not seen, over the same samples.
+    moving_rms : float
+        Away from the reversal zones.
+    unit : str
+    method : str
+    """
+
+    rms: float
+    low: float
+    high: float
+    moving_rms: float
+    unit: str
+    method: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the floor as the JSON interface prints it."""
+        return {
+            "rms": self.rms,
+            "low": self.low,
+            "high": self.high,
+            "unit": self.unit,
+            "method": self.method,
+            "moving_rms": self.moving_rms,
+        }
+
+
+def hats(values: np.ndarray, knots: np.ndarray) -> np.ndarray:
+    """Return piecewise-linear hat functions, shape (n, knots): they sum to one inside the knots."""
+    clipped = np.clip(values, knots[0], knots[-1])
+    right = np.clip(np.searchsorted(knots, clipped, side="right"), 1, knots.size - 1)
+    share = (clipped - knots[right - 1]) / (knots[right] - knots[right - 1])
+    out = np.zeros((values.size, knots.size))
+    rows = np.arange(values.size)
+    out[rows, right - 1] = 1.0 - share
+    out[rows, right] += share
+    return out
+
+
+def _direction(r: Prepared) -> np.ndarray:
+    direction = np.zeros(r.motion.size)
+    for s in r.strokes:
+        direction[s.onset : s.last] = s.direction
+    return direction
+
+
+def travel_since_reversal(r: Prepared) -> np.ndarray:
+    """Return how far the motion has come since the onset of its stroke."""
+    travel = np.zeros(r.motion.size)
+    for s in r.strokes:
+        travel[s.onset : s.last] = np.abs(r.motion[s.onset : s.last] - r.motion[s.onset])
+    return travel
+
+
+def saturated(runs: Sequence[Prepared]) -> list[np.ndarray]:
+    """Return the saturated model's columns for every run."""
+    low = min(float(r.motion.min()) for r in runs)
+    high = max(float(r.motion.max()) for r in runs)
+    top = max(float(np.abs(r.speed).max()) for r in runs)
+    longest = max(r.duration_s for r in runs)
+    position_knots = np.linspace(low, high, POSITION_HATS)
+    # Speeds crowd at the low end, and so do the laws that depend on them.
+    speed_knots = top * np.linspace(0.0, 1.0, SPEED_HATS) ** 1.5
+    travel_knots = (high - low) * np.array(TRAVEL_KNOTS)
+    made = []
+    for r in runs:
+        s = _direction(r)[:, None]
+        place = hats(r.motion, position_knots)
+        speed = hats(np.abs(r.speed), speed_knots)[:, 1:]
+        travel = hats(travel_since_reversal(r), travel_knots)[:, :-1]
+        time = (r.time_s / longest)[:, None]
+        slow = np.hstack([time, s * time, r.acceleration[:, None]])
+        made.append(np.hstack([place, s * place, speed, s * speed, s * travel, slow]))
+    return made
+
+
+def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
+    """Estimate the noise floor from runs alone, whatever model is to be compared."""
+    made = saturated(runs)
+    grams, owners, counts = [], [], []
+    for r, m in zip(runs, made, strict=True):
+        table = np.column_stack([m, r.effort])
+        for s in r.strokes:
+            part = slice(s.first, s.last)
+            a = table[part][r.usable[part] & ~r.zone[part]]
+            grams.append(a.T @ a)
+            owners.append(s.run)
+            counts.append(len(a))
+    blocks = Blocks(np.array(grams), np.array(owners), np.array(counts))
+    ridge = RIDGE * np.eye(blocks.gram.shape[1])
+    ridge[-1, -1] = 0.0
+    share = Blocks(blocks.gram + ridge, blocks.run, blocks.samples)
+    samples = max(int(blocks.samples.sum()), 1)
+    total = share.gram.sum(axis=0)
+    inside = float(loss(blocks.gram.sum(axis=0), solve(total))) / samples
+    folds = Folds.of(share)
+    unseen = inside
+    if folds.count > 1:
+        losses, _ = held_out(share, folds)
+        # A hat that only one run visits has no prediction there: such strokes say nothing about the noise. The median
+        # over strokes, scaled to a mean by the training's own ratio, is deaf to them.
+        per_stroke = losses / np.maximum(blocks.samples, 1)
+        seen = blocks.samples > 0
+        trained = np.array([loss(g, solve(total)) for g in blocks.gram[seen]]) / blocks.samples[seen]
+        unseen = max(inside, inside * float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300))))
+    moving = np.sqrt((inside + unseen) / 2.0)
+    return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit)
+
+
+def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: float, unit: str) -> NoiseFloor:
+    """Add what the uncertain starts of the strokes leave in the reversal zones."""
+    level = friction_level(runs)
+    squares, samples = 0.0, 0
+    for r in runs:
+        shift = r.recording.reversal_shift([("coulomb", [0.5 * r.recording.resolution])], 0.5, 0.5)
+        for s in r.strokes:
+            part = slice(s.first, s.last)
+            keep = r.usable[part]
+            squares += float(np.sum((shift[part][keep] * level * s.onset_uncertainty_s) ** 2))
+            samples += int(keep.sum())
+    start = squares / max(samples, 1)
+    rms, low_all, high_all = (float(np.sqrt(v**2 + start)) for v in (moving, low, high))
+    return NoiseFloor(
+        rms,
+        low_all,
+        high_all,
+        moving,
+        unit,
+        "saturated model of the state, between what it leaves where it was fitted (low) and where it was not (high); "
+        "in the reversal zones plus the uncertain instant of the start",
+    )
+
+
+def friction_level(runs: Sequence[Prepared]) -> float:
+    """Return half the height of the loop, roughly: what a reversal of friction changes by half."""
+    up, down = [], []
+    for r in runs:
+        direction = _direction(r)
+        keep = r.usable & ~r.zone
+        up.append(r.effort[keep & (direction > 0)])
+        down.append(r.effort[keep & (direction < 0)])
+    ups, downs = np.concatenate(up), np.concatenate(down)
+    if not ups.size or not downs.size:
+        return float(np.sqrt(np.mean(np.concatenate([ups, downs]) ** 2))) if ups.size + downs.size else 0.0
+    return abs(float(np.mean(ups) - np.mean(downs))) / 2.0

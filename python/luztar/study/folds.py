@@ -1,0 +1,59 @@
+"""Held-out prediction: every run from the others, or, with one run, its strokes in folds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .equations import Blocks, loss, solve
+
+# With a single run its strokes are dealt into this many folds of neighbouring pairs (one stroke each way), so that
+# every fold sees both directions.
+SINGLE_RUN_FOLDS = 4
+
+
+@dataclass(frozen=True)
+class Folds:
+    """Which fold each stroke is predicted in.
+
+    Attributes
+    ----------
+    of_stroke : ndarray of int, shape (strokes,)
+    count : int
+    """
+
+    of_stroke: np.ndarray
+    count: int
+
+    @classmethod
+    def of(cls, blocks: Blocks) -> Folds:
+        """Deal strokes: by run where there are several, else in neighbouring pairs."""
+        runs = np.unique(blocks.run)
+        if runs.size > 1:
+            return cls(np.searchsorted(runs, blocks.run), runs.size)
+        pairs = np.arange(blocks.run.size) // 2
+        count = min(SINGLE_RUN_FOLDS, int(pairs.max()) + 1) if blocks.run.size else 0
+        return cls(pairs % max(count, 1), count)
+
+
+def held_out(blocks: Blocks, folds: Folds) -> tuple[np.ndarray, np.ndarray]:
+    """Predict every fold from the others.
+
+    Returns
+    -------
+    losses : ndarray, shape (strokes,)
+        Sum of squares left in each stroke by coefficients that have not seen its fold.
+    training : ndarray, shape (folds,)
+        Sum of squares left in the strokes each fold was trained on: what inner parameters are chosen by.
+    """
+    total = blocks.gram.sum(axis=0)
+    losses = np.zeros(len(blocks.gram))
+    training = np.zeros(folds.count)
+    for k in range(folds.count):
+        inside = folds.of_stroke == k
+        rest = total - blocks.gram[inside].sum(axis=0)
+        coefficients = solve(rest)
+        training[k] = loss(rest, coefficients)
+        losses[inside] = loss(blocks.gram[inside], coefficients)
+    return losses, training

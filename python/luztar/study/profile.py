@@ -1,0 +1,237 @@
+"""Inner parameters by profile: searched on a grid, then refined one at a time with everything linear refitted."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model import Model, card
+from .equations import Blocks, Columns, Weights, blocks, columns, loss, shifts, solve
+from .prepare import Prepared
+from .terms import Terms, grid, shapes_contact
+
+# Rounds over all inner parameters, and the relative fall of the loss below which another round is not worth it.
+ROUNDS = 3
+WORTH = 1e-4
+# Width to which one parameter is located, as a share of its grid's spacing: far below its standard error.
+LOCATED = 0.02
+# A break-away blunter than the sensor's half step is believed only if it takes this share off the loss.
+BLUNTER_MUST_GAIN = 0.95
+# Grids that are searched geometrically are refined in the logarithm.
+_GEOMETRIC = ("speed", "travel", "time", "width")
+# Grids whose few values are taken as they are.
+_DISCRETE = ("resolution", "count", "shape", "waves_per_range")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What stays the same while parameters vary.
+
+    Attributes
+    ----------
+    runs : tuple of Prepared
+    model : Model
+        Its structure, band and known values.
+    weights : Weights
+    fixed : mapping of (effect, column) to float
+        Coefficients that are given beforehand.
+    """
+
+    runs: Sequence[Prepared]
+    model: Model
+    weights: Weights
+    fixed: Mapping[tuple[str, int], float]
+
+
+@dataclass(frozen=True)
+class State:
+    """Terms with their columns and blocks."""
+
+    terms: Terms
+    made: Columns
+    blocks: Blocks
+
+    @functools.cached_property
+    def gram(self) -> np.ndarray:
+        """The summed normal equations."""
+        return self.blocks.gram.sum(axis=0)
+
+    @functools.cached_property
+    def coefficients(self) -> np.ndarray:
+        """The coefficients with the least sum of squares."""
+        return solve(self.gram)
+
+    @functools.cached_property
+    def loss(self) -> float:
+        """The least sum of squares."""
+        return float(loss(self.gram, self.coefficients))
+
+
+def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
+    """Return (effect, number of its column) for every column of the terms."""
+    return [(name, i) for name in terms.effects for i in range(len(card(name, model.structure_name).linear))]
+
+
+def state(problem: Problem, terms: Terms, like: State | None = None, changed: str | None = None) -> State:
+    """Build columns and blocks; with ``like`` and ``changed`` only the columns of one effect are made anew."""
+    band = problem.model.band_hz
+    if like is None or changed is None or shapes_contact(changed) or like.terms.effects != terms.effects:
+        made = _known_removed(problem, terms, columns(problem.runs, terms, band))
+    else:
+        made = _replaced(problem, terms, like.made, changed)
+    return State(terms, made, blocks(problem.runs, made, problem.weights))
+
+
+def _free(problem: Problem, terms: Terms) -> list[int]:
+    return [i for i, owner in enumerate(owners(terms, problem.model)) if owner not in problem.fixed]
+
+
+def _known_removed(problem: Problem, terms: Terms, made: Columns) -> Columns:
+    if not problem.fixed:
+        return made
+    all_owners = owners(terms, problem.model)
+    free = _free(problem, terms)
+    matrix = []
+    for m in made.matrix:
+        known = sum(problem.fixed[o] * m[:, i] for i, o in enumerate(all_owners) if o in problem.fixed)
+        matrix.append(np.column_stack([m[:, free], m[:, -1] - known]))
+    return Columns(terms, tuple(matrix), made.shift)
+
+
+def _replaced(problem: Problem, terms: Terms, made: Columns, changed: str) -> Columns:
+    index = terms.effects.index(changed)
+    free = [o for o in owners(terms, problem.model) if o not in problem.fixed]
+    places = [k for k, (name, _) in enumerate(free) if name == changed]
+    matrix = []
+    for r, m in zip(problem.runs, made.matrix, strict=True):
+        m = m.copy()
+        m[:, places] = r.recording.columns(terms.pairs(), [index]).T
+        matrix.append(m)
+    return Columns(terms, tuple(matrix), made.shift)
+
+
+def with_effect(problem: Problem, base: State, name: str, inner: tuple[float, ...]) -> State:
+    """Return the state with one effect more."""
+    terms = base.terms.having(name, inner)
+    if shapes_contact(name):
+        return state(problem, terms)
+    index = terms.effects.index(name)
+    matrix = []
+    for r, m in zip(problem.runs, base.made.matrix, strict=True):
+        c = r.recording.columns(terms.pairs(), [index]).T
+        matrix.append(np.column_stack([m[:, :-1], c, m[:, -1]]))
+    made = Columns(terms, tuple(matrix), base.made.shift)
+    return State(terms, made, blocks(problem.runs, made, problem.weights))
+
+
+def refine(
+    problem: Problem,
+    start: State,
+    only: str | None = None,
+    rounds: int = ROUNDS,
+    visit: Callable[[State], None] | None = None,
+) -> State:
+    """Locate every inner parameter (or those of one effect) at the least sum of squares.
+
+    Parameters
+    ----------
+    problem : Problem
+    start : State
+        From a grid search; each parameter is looked for between the neighbours of its grid point, and further if the
+        least lies at an end.
+    only : str, optional
+        Refine this effect's parameters alone.
+    rounds : int
+        Passes over the parameters.
+    visit : callable, optional
+        Is shown every state tried.
+    """
+    best = start
+    for _ in range(rounds):
+        before = best.loss
+        for name in best.terms.effects:
+            if only is not None and name != only:
+                continue
+            for i, p in enumerate(card(name, problem.model.structure_name).inner):
+                if f"{name}.{p.key}" in problem.model.known:
+                    continue
+                best = _refine_one(problem, best, name, i, visit)
+        if best.loss > before * (1.0 - WORTH):
+            break
+    return best
+
+
+def _refine_one(
+    problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None
+) -> State:
+    p = card(name, problem.model.structure_name).inner[i]
+    word = p.grid[0] if p.grid else ""
+    points = grid(p, problem.runs)
+    tried: dict[float, State] = {best.terms.inner[name][i]: best}
+
+    def at(value: float) -> float:
+        value = float(np.clip(value, p.low, p.high))
+        if value not in tried:
+            inner = list(best.terms.inner[name])
+            inner[i] = value
+            tried[value] = state(problem, best.terms.having(name, tuple(inner)), best, name)
+            if visit is not None:
+                visit(tried[value])
+        return tried[value].loss
+
+    if word in _DISCRETE:
+        for value in points:
+            at(float(value))
+    elif len(points) > 1:
+        to, back = (np.log, np.exp) if word in _GEOMETRIC else (lambda v: v, lambda v: v)
+        spacing = float(to(points[1]) - to(points[0]))
+        centre = float(to(best.terms.inner[name][i]))
+        golden(lambda v: at(float(back(v))), centre, spacing)
+    if word == "resolution":
+        return _sharpest(list(tried.values()), name, i)
+    return min(tried.values(), key=lambda s: s.loss)
+
+
+def _sharpest(states: Sequence[State], name: str, i: int) -> State:
+    """Return the sharpest break-away that the loss does not speak against.
+
+    A blunter one is late at every reversal as a delay is; without clear evidence it would hide a delay of a few
+    milliseconds or invent one.
+    """
+    least = min(s.loss for s in states)
+    good = [s for s in states if s.loss * BLUNTER_MUST_GAIN <= least]
+    return min(good, key=lambda s: s.terms.inner[name][i])
+
+
+def golden(f: Callable[[float], float], centre: float, spacing: float) -> float:
+    """Find a minimum near ``centre`` by golden section, walking on while it lies at an end of the bracket.
+
+    Derivatives are of no use here: the loss over a gap or a break-away has corners at the steps of the sensor.
+    """
+    low, high = centre - spacing, centre + spacing
+    f_low, f_centre, f_high = f(low), f(centre), f(high)
+    for _ in range(6):
+        if f_low < f_centre and f_low <= f_high:
+            low, centre, high = low - spacing, low, centre
+            f_low, f_centre, f_high = f(low), f_low, f_centre
+        elif f_high < f_centre:
+            low, centre, high = centre, high, high + spacing
+            f_low, f_centre, f_high = f_centre, f_high, f(high)
+        else:
+            break
+    ratio = (np.sqrt(5.0) - 1.0) / 2.0
+    a, b = high - ratio * (high - low), low + ratio * (high - low)
+    f_a, f_b = f(a), f(b)
+    while high - low > LOCATED * spacing:
+        if f_a <= f_b:
+            high, b, f_b = b, a, f_a
+            a = high - ratio * (high - low)
+            f_a = f(a)
+        else:
+            low, a, f_a = a, b, f_b
+            b = low + ratio * (high - low)
+            f_b = f(b)
+    return (low + high) / 2.0
