@@ -12,9 +12,19 @@ from . import errors as errors
 from ._core import __version__ as __version__
 
 if TYPE_CHECKING:
-    pass
+    from . import measurement as measurement
+    from .measurement.frame import read_frame as read_frame
+    from .measurement.read import read as read
+    from .measurement.run import Run as Run
+    from .measurement.runs import Runs as Runs
 
-_LAZY: dict[str, str] = {}
+_LAZY: dict[str, str] = {
+    "Run": "measurement.run:Run",
+    "Runs": "measurement.runs:Runs",
+    "measurement": "measurement",
+    "read": "measurement.read:read",
+    "read_frame": "measurement.frame:read_frame",
+}
 
 
 def __getattr__(name: str) -> object:
