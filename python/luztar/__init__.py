@@ -12,18 +12,40 @@ from . import errors as errors
 from ._core import __version__ as __version__
 
 if TYPE_CHECKING:
+    from . import effects as effects
     from . import measurement as measurement
-    from .measurement.frame import read_frame as read_frame
-    from .measurement.read import read as read
-    from .measurement.run import Run as Run
-    from .measurement.runs import Runs as Runs
+    from . import model as model
+    from . import regression as regression
+    from . import signal as signal
+    from . import stats as stats
+    from . import tb038 as tb038
+    from .measurement import Run as Run
+    from .measurement import Runs as Runs
+    from .measurement import read as read
+    from .measurement import read_frame as read_frame
+    from .model import Model as Model
+    from .study import compare as compare
+    from .study import diagnose as diagnose
+    from .study import fit as fit
+    from .study import study as study
 
 _LAZY: dict[str, str] = {
-    "Run": "measurement.run:Run",
-    "Runs": "measurement.runs:Runs",
+    "Model": "model:Model",
+    "Run": "measurement:Run",
+    "Runs": "measurement:Runs",
+    "compare": "study:compare",
+    "diagnose": "study:diagnose",
+    "effects": "effects",
+    "fit": "study:fit",
     "measurement": "measurement",
-    "read": "measurement.read:read",
-    "read_frame": "measurement.frame:read_frame",
+    "model": "model",
+    "read": "measurement:read",
+    "read_frame": "measurement:read_frame",
+    "regression": "regression",
+    "signal": "signal",
+    "stats": "stats",
+    "study": "study:study",
+    "tb038": "tb038",
 }
 
 

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::error::CoreError;
 
 /// A low-pass design.
-#[pyclass(frozen, module = "luztar._core", skip_from_py_object)]
+#[pyclass(frozen, module = "luztar._core")]
 #[derive(Clone)]
 pub struct LowPass(core::LowPass);
 
@@ -69,7 +69,7 @@ impl LowPass {
 }
 
 /// A causal filter with its memory.
-#[pyclass(module = "luztar._core", skip_from_py_object)]
+#[pyclass(module = "luztar._core")]
 #[derive(Clone)]
 pub struct Filter(core::Filter);
 
