@@ -6,6 +6,7 @@ mod contact;
 mod kinematics;
 mod recording;
 mod resolution;
+mod staircase;
 mod strokes;
 
 pub use columns::{Term, inner_of};

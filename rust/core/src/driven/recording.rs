@@ -2,6 +2,7 @@
 
 use super::kinematics::derivative;
 use super::resolution::{Resolution, span};
+use super::staircase::join_steps;
 use super::strokes::{Stroke, strokes};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
@@ -48,7 +49,7 @@ pub struct Recording {
     pub(super) position: Vec<f64>,
     pub(super) speed: Vec<f64>,
     pub(super) acceleration: Vec<f64>,
-    /// What the contact follows: raw where the sensor moves in steps.
+    /// What the contact follows: an encoder's crossings joined, any other sensor smoothed.
     pub(super) seen: Vec<f64>,
     pub(super) decimate: usize,
     pub(super) turn_rad_per_unit: f64,
@@ -86,14 +87,20 @@ impl Recording {
         let kinematic_hz = band
             .upper_hz
             .map_or(sample_rate_hz / 40.0, |hz| KINEMATICS_OVER_BAND * hz);
-        let smooth = if kinematic_hz < 0.45 * sample_rate_hz {
-            run(&mut zero_phase(kinematic_hz, sample_rate_hz)?, position)?
-        } else {
-            position.to_vec()
+        let mut smoother = (kinematic_hz < 0.45 * sample_rate_hz)
+            .then(|| zero_phase(kinematic_hz, sample_rate_hz))
+            .transpose()?;
+        let mut smoothed = |x: &[f64]| {
+            smoother
+                .as_mut()
+                .map_or_else(|| Ok(x.to_vec()), |filter| run(filter, x))
         };
+        let mut smooth = smoothed(position)?;
         let resolution = Resolution::of(position, &smooth);
         let seen = if resolution.quantised {
-            position.to_vec()
+            let joined = join_steps(position);
+            smooth = smoothed(&joined)?;
+            joined
         } else {
             smooth.clone()
         };

@@ -67,7 +67,7 @@ fn merge_short(position: &[f64], mut turns: Vec<usize>, minimum_travel: f64) -> 
 
 /// Finds the strokes of a record.
 ///
-/// `seen` is the position as the contact follows it (raw for an encoder), `step` its resolution; onsets are looked
+/// `seen` is the position as the contact follows it, `step` its resolution; onsets are looked
 /// for on it, turning points on `smooth`.
 pub fn strokes(
     smooth: &[f64],

@@ -42,7 +42,7 @@ pub enum Grid {
         /// The largest value as a share of the range of motion.
         share_of_range: f64,
     },
-    /// A few multiples of half a resolution step: the sharpest break-away the sensor can show.
+    /// Geometric around the resolution of the position sensor: the sharpest break-away it can show.
     Resolution,
     /// Even, inside the range of motion.
     Place,

@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from ..model import card
-from .equations import Blocks, Columns, blocks, solve
-from .profile import Problem, State, owners, state
-from .terms import grid
+from .equations import Blocks, blocks, solve
+from .jacobian import continuous, jacobian
+from .profile import Problem, State, owners
 
 LEVEL = 0.95
 # Where the others explain all but this share of a column's length, the data cannot tell its coefficient: a variance
@@ -63,20 +63,10 @@ class Estimate:
         return out
 
 
-@dataclass(frozen=True)
-class _Inner:
-    """An inner parameter that varies continuously, with the step of its numerical derivative."""
-
-    effect: str
-    index: int
-    key: str
-    step: float
-
-
 def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
     """Return every parameter of a fitted state, keyed ``effect.parameter``."""
-    varied = _continuous(problem, fitted)
-    made = _with_derivatives(problem, fitted, varied)
+    varied = continuous(problem, fitted)
+    made = jacobian(problem, fitted, varied)
     parts = blocks(problem.runs, made, problem.weights)
     full = solve(parts.gram.sum(axis=0))
     covariance, degrees = jackknife(parts, full)
@@ -137,47 +127,6 @@ def jackknife(parts: Blocks, full: np.ndarray) -> tuple[np.ndarray, int]:
         return np.full((full.size, full.size), np.inf), 1
     changes = np.array([solve(total - parts.gram[j]) - full for j in kept])
     return (count - 1) / count * changes.T @ changes, count - 1
-
-
-def _continuous(problem: Problem, fitted: State) -> list[_Inner]:
-    found = []
-    for name in fitted.terms.effects:
-        for i, p in enumerate(card(name, problem.model.structure_name).inner):
-            if f"{name}.{p.key}" in problem.model.known or p.grid is None:
-                continue
-            if p.grid[0] in ("resolution", "shape", "count", "waves_per_range"):
-                continue
-            value = fitted.terms.inner[name][i]
-            if p.grid[0] in ("speed", "travel", "time", "width"):
-                step = 0.05 * value
-            else:
-                points = grid(p, problem.runs)
-                step = 0.2 * float(points[1] - points[0])
-            found.append(_Inner(name, i, p.key, max(step, np.finfo(float).tiny)))
-    return found
-
-
-def _with_derivatives(problem: Problem, fitted: State, varied: Sequence[_Inner]) -> Columns:
-    """Put the derivative of the model by each inner parameter beside the columns (central differences)."""
-    derivative: list[list[np.ndarray]] = [[] for _ in problem.runs]
-    for v in varied:
-        sides = []
-        for sign in (1.0, -1.0):
-            inner = list(fitted.terms.inner[v.effect])
-            inner[v.index] += sign * v.step
-            moved = state(problem, fitted.terms.having(v.effect, tuple(inner)), fitted, v.effect)
-            sides.append([_model(m, fitted.coefficients) for m in moved.made.matrix])
-        for k, (up, down) in enumerate(zip(*sides, strict=True)):
-            derivative[k].append((up - down) / (2.0 * v.step))
-    matrix = tuple(
-        np.column_stack([m[:, :-1], *d, m[:, -1]]) for m, d in zip(fitted.made.matrix, derivative, strict=True)
-    )
-    return Columns(fitted.terms, matrix, fitted.made.shift)
-
-
-def _model(matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    # What is known beforehand is subtracted from the measurement and may depend on the parameter as well.
-    return matrix[:, :-1] @ coefficients - matrix[:, -1]
 
 
 def _collinear(gram: np.ndarray) -> np.ndarray:

@@ -18,12 +18,10 @@ ROUNDS = 3
 WORTH = 1e-4
 # Width to which one parameter is located, as a share of its grid's spacing: far below its standard error.
 LOCATED = 0.02
-# A break-away blunter than the sensor's half step is believed only if it takes this share off the loss.
-BLUNTER_MUST_GAIN = 0.95
 # Grids that are searched geometrically are refined in the logarithm.
-_GEOMETRIC = ("speed", "travel", "time", "width")
+_GEOMETRIC = ("speed", "travel", "time", "width", "resolution")
 # Grids whose few values are taken as they are.
-_DISCRETE = ("resolution", "count", "shape", "waves_per_range")
+_DISCRETE = ("count", "shape", "waves_per_range")
 
 
 @dataclass(frozen=True)
@@ -190,20 +188,7 @@ def _refine_one(
         spacing = float(to(points[1]) - to(points[0]))
         centre = float(to(best.terms.inner[name][i]))
         golden(lambda v: at(float(back(v))), centre, spacing)
-    if word == "resolution":
-        return _sharpest(list(tried.values()), name, i)
     return min(tried.values(), key=lambda s: s.loss)
-
-
-def _sharpest(states: Sequence[State], name: str, i: int) -> State:
-    """Return the sharpest break-away that the loss does not speak against.
-
-    A blunter one is late at every reversal as a delay is; without clear evidence it would hide a delay of a few
-    milliseconds or invent one.
-    """
-    least = min(s.loss for s in states)
-    good = [s for s in states if s.loss * BLUNTER_MUST_GAIN <= least]
-    return min(good, key=lambda s: s.terms.inner[name][i])
 
 
 def golden(f: Callable[[float], float], centre: float, spacing: float) -> float:

@@ -15,7 +15,7 @@ from .prepare import Prepared
 
 # Points of a search grid. Speeds, travels and times are searched geometrically: a factor of 1.3 between points loses
 # less than 1 % of the effect's power before the refinement.
-_POINTS = {"speed": 14, "travel": 20, "time": 7, "delay": 27, "place": 13, "width": 5}
+_POINTS = {"speed": 14, "travel": 20, "time": 7, "delay": 27, "place": 13, "width": 5, "resolution": 7}
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def start_terms(model: Model, runs: Sequence[Prepared]) -> Terms:
             key = f"{name}.{p.key}"
             given = model.known.get(key, model.start.get(key))
             points = grid(p, runs)
-            values.append(float(points[0 if p.grid and p.grid[0] == "resolution" else len(points) // 2]))
+            values.append(float(points[len(points) // 2]))
             if given is not None:
                 values[-1] = float(given)
         inner[name] = tuple(values)
@@ -85,7 +85,7 @@ def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
         case "travel":
             return np.geomspace(min(1.5 * step, 0.2 * number * reach), number * reach, points)
         case "resolution":
-            return 0.5 * step * np.array([1.0, 2.0, 4.0])
+            return step * np.geomspace(0.25, 2.0, points)
         case "place":
             return np.linspace(low, high, points + 2)[1:-1]
         case "width":

@@ -1,0 +1,148 @@
+"""What each effect of the catalogue would do for a fitted model: refit with it, predict what was not seen.
+
+Naming rests on this and on nothing else. A candidate's inner parameters are chosen on the strokes a fold was trained
+on, its loss is counted on the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model import Card, cards
+from .fit import Fit
+from .profile import Problem, State, with_effect
+from .score import Feature
+from .search import Search
+from .terms import inner_grid, shapes_contact
+
+# A candidate within this many standard errors (paired by stroke) of the best is not told apart from it.
+SET_ERRORS = 2.0
+# A gain that no engineer would act on is none: 1 % of the held-out loss.
+PRACTICAL_GAIN = 0.01
+# Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
+REFINED_WITHIN = 1.6
+# Grid points per candidate shown to the score test; more only overlap.
+TESTED_POINTS = 5
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect tried on top of a model.
+
+    Attributes
+    ----------
+    card : Card
+    search : Search
+        Its states and held-out losses.
+    """
+
+    card: Card
+    search: Search
+
+    @property
+    def name(self) -> str:
+        """The effect's name."""
+        return self.card.name
+
+    @property
+    def held_out_loss(self) -> float:
+        """Held-out sum of squares."""
+        return self.search.held_out_loss
+
+
+def possible(fitted: Fit) -> list[Card]:
+    """Return the cards of what may be missing: not in the model already, and meaningful for it."""
+    model = fitted.model
+    found = []
+    for c in cards(model.structure_name):
+        if c.name in model.effects or (c.needs and c.needs not in model.effects):
+            continue
+        if c.per_turn and model.structure_name == "axis" and "pitch_m" not in model.known:
+            continue
+        found.append(c)
+    return found
+
+
+def try_all(
+    fitted: Fit, progress: Callable[[int, int], None] | None = None
+) -> tuple[list[Candidate], list[Feature]]:
+    """Refit a model with each possible effect.
+
+    Returns
+    -------
+    candidates : list of Candidate
+        By held-out loss, the best first.
+    features : list of Feature
+        The same candidates as directions for the score test.
+    """
+    found, features = [], []
+    listed = possible(fitted)
+    for done, c in enumerate(listed):
+        candidate, tested = _try(fitted, c)
+        found.append(candidate)
+        features += tested
+        if progress is not None:
+            progress(done + 1, len(listed))
+    found.sort(key=lambda c: c.held_out_loss)
+    least = found[0].held_out_loss if found else 0.0
+    for candidate in found:
+        if candidate.card.inner and candidate.held_out_loss <= REFINED_WITHIN * least:
+            candidate.search.refine(fitted.problem, only=candidate.name, rounds=1)
+    found.sort(key=lambda c: c.held_out_loss)
+    return found, features
+
+
+def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
+    problem, base = fitted.problem, fitted.state
+    search = Search(fitted.search.folds)
+    points = inner_grid(c.name, problem.model, problem.runs)
+    tested = set(np.linspace(0, len(points) - 1, min(TESTED_POINTS, len(points))).round().astype(int).tolist())
+    features: list[Feature] = []
+    for i, inner in enumerate(points):
+        tried = with_effect(problem, base, c.name, inner)
+        search.visit(tried)
+        if i in tested:
+            features += _features(problem, base, tried, c)
+    return Candidate(c, search), features
+
+
+def _features(problem: Problem, base: State, tried: State, c: Card) -> list[Feature]:
+    if not shapes_contact(c.name):
+        more = tried.made.matrix[0].shape[1] - base.made.matrix[0].shape[1]
+        added = tuple(m[:, -1 - more : -1] for m in tried.made.matrix)
+        features = [Feature(c.name, added)]
+        # Inertia shows where the speed changes most.
+        return [*features, Feature(c.name, added, inside_zones=True)] if c.name == "inertia" else features
+    change = tuple(
+        ((t[:, :-1] - b[:, :-1]) @ base.coefficients)[:, None]
+        for t, b in zip(tried.made.matrix, base.made.matrix, strict=True)
+    )
+    return [Feature(c.name, change), Feature(c.name, change, inside_zones=True)]
+
+
+def paired_error(a: Sequence[float] | np.ndarray, b: Sequence[float] | np.ndarray) -> tuple[float, float]:
+    """Return the sum of the differences of two losses by stroke and its standard error."""
+    difference = np.asarray(a) - np.asarray(b)
+    return float(difference.sum()), float(difference.std(ddof=1) * np.sqrt(difference.size))
+
+
+def gain(base: Search, better: Search) -> tuple[float, float]:
+    """Return the share of the held-out loss that a candidate takes away, and how many standard errors that is."""
+    total, error = paired_error(base.losses, better.losses)
+    return total / max(base.held_out_loss, np.finfo(float).tiny), total / max(error, np.finfo(float).tiny)
+
+
+def equivalent(found: Sequence[Candidate]) -> list[Candidate]:
+    """Return the best candidate and those that the data cannot tell from it; decoys compete like the others."""
+    if not found:
+        return []
+    best = found[0]
+    chosen = [best]
+    for other in found[1:]:
+        behind, error = paired_error(other.search.losses, best.search.losses)
+        if behind <= SET_ERRORS * error:
+            chosen.append(other)
+    return chosen

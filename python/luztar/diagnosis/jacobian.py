@@ -1,0 +1,65 @@
+"""The derivative of a fitted model by everything that was fitted, inner parameters included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model import card
+from .equations import Columns
+from .profile import Problem, State, state
+from .terms import grid
+
+
+@dataclass(frozen=True)
+class Inner:
+    """An inner parameter that varies continuously, with the step of its numerical derivative."""
+
+    effect: str
+    index: int
+    key: str
+    step: float
+
+
+def continuous(problem: Problem, fitted: State) -> list[Inner]:
+    """Return the inner parameters that were fitted and vary continuously."""
+    found = []
+    for name in fitted.terms.effects:
+        for i, p in enumerate(card(name, problem.model.structure_name).inner):
+            if f"{name}.{p.key}" in problem.model.known or p.grid is None:
+                continue
+            if p.grid[0] in ("resolution", "shape", "count", "waves_per_range"):
+                continue
+            value = fitted.terms.inner[name][i]
+            if p.grid[0] in ("speed", "travel", "time", "width"):
+                step = 0.05 * value
+            else:
+                points = grid(p, problem.runs)
+                step = 0.2 * float(points[1] - points[0])
+            found.append(Inner(name, i, p.key, max(step, np.finfo(float).tiny)))
+    return found
+
+
+def jacobian(problem: Problem, fitted: State, varied: Sequence[Inner]) -> Columns:
+    """Put the derivative of the model by each inner parameter beside the columns (central differences)."""
+    derivative: list[list[np.ndarray]] = [[] for _ in problem.runs]
+    for v in varied:
+        sides = []
+        for sign in (1.0, -1.0):
+            inner = list(fitted.terms.inner[v.effect])
+            inner[v.index] += sign * v.step
+            moved = state(problem, fitted.terms.having(v.effect, tuple(inner)), fitted, v.effect)
+            sides.append([_model(m, fitted.coefficients) for m in moved.made.matrix])
+        for k, (up, down) in enumerate(zip(*sides, strict=True)):
+            derivative[k].append((up - down) / (2.0 * v.step))
+    matrix = tuple(
+        np.column_stack([m[:, :-1], *d, m[:, -1]]) for m, d in zip(fitted.made.matrix, derivative, strict=True)
+    )
+    return Columns(fitted.terms, matrix, fitted.made.shift)
+
+
+def _model(matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    # What is known beforehand is subtracted from the measurement and may depend on the parameter as well.
+    return matrix[:, :-1] @ coefficients - matrix[:, -1]

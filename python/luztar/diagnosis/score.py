@@ -1,0 +1,195 @@
+"""Is something missing? Score tests of the candidates and of what repeats, each stroke one observation.
+
+The residual of the fitted model is correlated, stroke by stroke, with what each candidate would add (score) and with
+cells of state, time and travel since the reversal (lack of fit, which needs no candidate). Columns are freed of what
+the model explains already. Reversal zones are left out, except for a test of their own of what only shows there.
+
+The tests detect; they do not name. Score statistics saturate at the number of strokes and rank wrong candidates above
+right ones: naming is by held-out error after refitting (see ``candidates``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .chance import p_values, signs, studentised
+from .floor import hats, travel_since_reversal
+from .prepare import Prepared
+
+# Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
+POSITION_CELLS = 12
+SPEED_CELLS = 5
+TIME_CELLS = 8
+TRAVEL_CELLS = (0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5)
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One direction in which the residual may be wrong.
+
+    Attributes
+    ----------
+    name : str
+        The candidate, or ``state``, ``time``, ``reversal``.
+    columns : tuple of ndarray, shape (n, q)
+        Per run.
+    inside_zones : bool
+        Whether it is tested in the reversal zones rather than outside.
+    """
+
+    name: str
+    columns: tuple[np.ndarray, ...]
+    inside_zones: bool = False
+
+
+@dataclass(frozen=True)
+class Detection:
+    """The outcome of the tests.
+
+    Attributes
+    ----------
+    p_value : float
+        That nothing is missing: one level over all tests.
+    candidates : dict of str to float
+        Adjusted p-value per candidate.
+    lack_of_fit : float
+        Adjusted p-value that nothing repeats which the model lacks, without reference to any candidate.
+    along : str
+        Where it repeats most: ``state``, ``time`` or ``reversal``.
+    strokes : int
+    """
+
+    p_value: float
+    candidates: dict[str, float]
+    lack_of_fit: float
+    along: str
+    strokes: int
+
+
+def cells(runs: Sequence[Prepared]) -> list[Feature]:
+    """Return the directions of the tests for lack of fit."""
+    low = min(float(r.motion.min()) for r in runs)
+    high = max(float(r.motion.max()) for r in runs)
+    longest = max(r.duration_s for r in runs)
+    moving = np.concatenate([np.abs(r.speed)[r.usable & ~r.zone] for r in runs])
+    speeds = np.quantile(moving, np.linspace(0.02, 0.98, SPEED_CELLS)) if moving.size else np.array([0.0, 1.0])
+    speeds = np.unique(speeds)
+    state, time, travel = [], [], []
+    for r in runs:
+        up = np.zeros(r.motion.size)
+        for s in r.strokes:
+            up[s.onset : s.last] = s.direction
+        ways = [(up > 0)[:, None], (up < 0)[:, None]]
+        place = hats(r.motion, np.linspace(low, high, POSITION_CELLS))
+        speed = hats(np.abs(r.speed), speeds) if speeds.size > 1 else np.zeros((r.motion.size, 0))
+        state.append(np.hstack([block * way for block in (place, speed) for way in ways]))
+        clock = hats(r.time_s, np.linspace(0.0, longest, TIME_CELLS))
+        time.append(np.hstack([clock, clock * up[:, None]]))
+        since = hats(travel_since_reversal(r), (high - low) * np.array(TRAVEL_CELLS))[:, :-1]
+        travel.append(np.hstack([since * way for way in ways]))
+    return [Feature("state", tuple(state)), Feature("time", tuple(time)), Feature("reversal", tuple(travel))]
+
+
+def detect(
+    runs: Sequence[Prepared],
+    model_columns: Sequence[np.ndarray],
+    candidates: Sequence[Feature],
+) -> Detection:
+    """Test whether something is missing from a model.
+
+    Parameters
+    ----------
+    runs : sequence of Prepared
+    model_columns : sequence of ndarray, shape (n, p + 1)
+        The fitted model's columns and derivatives by its inner parameters, the measurement last.
+    candidates : sequence of Feature
+        What each candidate would add; several features may carry the same name.
+    """
+    strokes = [(r, s) for r in runs for s in r.strokes]
+    features = [*candidates, *cells(runs)]
+    scores = _scores(runs, model_columns, features)
+    live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
+    flips = signs(len(strokes))
+    lack = {"state", "time", "reversal"}
+    names = [f.name for f in features]
+    drawn = {}
+    for name in dict.fromkeys(names):
+        parts = [studentised(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
+        if not parts:
+            continue
+        # A candidate is as strong as its best column; cells add up, for a pattern is spread over many of them.
+        joined = np.hstack(parts)
+        drawn[name] = joined.sum(axis=1) if name in lack else joined.max(axis=1)
+    if not drawn:
+        return Detection(1.0, {}, 1.0, "state", len(strokes))
+    keys = list(drawn)
+    single = p_values(np.column_stack([drawn[k] for k in keys]))
+    family = np.array([k in lack for k in keys])
+    # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
+    groups = [np.flatnonzero(~family)] + [np.array([i]) for i in np.flatnonzero(family)]
+    grouped = p_values(-np.column_stack([single[:, g].min(axis=1) for g in groups if g.size]))
+    overall = p_values(-grouped.min(axis=1)[:, None])[:, 0]
+    adjusted = {
+        k: float(np.mean(single[:, ~family].min(axis=1) <= single[0, i] + 1e-12))
+        for i, k in enumerate(keys)
+        if not family[i]
+    }
+    lack_keys = [k for k in keys if k in lack]
+    lack_single = single[:, family]
+    if not lack_keys:
+        return Detection(float(overall[0]), adjusted, 1.0, "state", len(strokes))
+    lack_of_fit = float(p_values(-lack_single.min(axis=1)[:, None])[0, 0])
+    along = lack_keys[int(np.argmin(lack_single[0]))]
+    return Detection(float(overall[0]), adjusted, lack_of_fit, along, len(strokes))
+
+
+def _scores(
+    runs: Sequence[Prepared], model_columns: Sequence[np.ndarray], features: Sequence[Feature]
+) -> list[np.ndarray]:
+    """Return the scores of every feature, each of shape (strokes, q)."""
+    out: list[np.ndarray] = [np.empty(0)] * len(features)
+    for inside in (False, True):
+        chosen = [i for i, f in enumerate(features) if f.inside_zones == inside]
+        if not chosen:
+            continue
+        keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
+        table = np.concatenate([m[k] for m, k in zip(model_columns, keep, strict=True)])
+        basis, response = table[:, :-1], table[:, -1]
+        q, _ = np.linalg.qr(_scaled(basis))
+        residual = response - q @ (q.T @ response)
+        owner = np.concatenate([_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)])
+        count = sum(len(r.strokes) for r in runs)
+        for i in chosen:
+            z = np.concatenate([c[k] for c, k in zip(features[i].columns, keep, strict=True)])
+            z = z - q @ (q.T @ z)
+            product = z * residual[:, None]
+            scores = np.zeros((count, z.shape[1]))
+            inside_strokes = owner >= 0
+            np.add.at(scores, owner[inside_strokes], product[inside_strokes])
+            # A column that the model explains already has nothing left but rounding.
+            scores[:, np.linalg.norm(z, axis=0) < 1e-9 * np.sqrt(len(z))] = 0.0
+            out[i] = scores
+    return out
+
+
+def _scaled(basis: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(basis, axis=0)
+    return basis[:, length > 0] / length[length > 0]
+
+
+def _offsets(runs: Sequence[Prepared]) -> list[tuple[Prepared, int]]:
+    found, offset = [], 0
+    for r in runs:
+        found.append((r, offset))
+        offset += len(r.strokes)
+    return found
+
+
+def _owner(r: Prepared, offset: int) -> np.ndarray:
+    owner = np.full(r.motion.size, -1)
+    for i, s in enumerate(r.strokes):
+        owner[s.first : s.last] = offset + i
+    return owner
