@@ -11,7 +11,7 @@ import numpy as np
 from ..model import Model, card
 from .equations import Blocks, Columns, Weights, blocks, columns, loss, shifts, solve
 from .prepare import Prepared
-from .terms import Terms, grid, shapes_contact
+from .terms import Terms, grid, least_travel, shapes_contact
 
 # Rounds over all inner parameters, and the relative fall of the loss below which another round is not worth it.
 ROUNDS = 3
@@ -168,10 +168,16 @@ def _refine_one(
     p = card(name, problem.model.structure_name).inner[i]
     word = p.grid[0] if p.grid else ""
     points = grid(p, problem.runs)
+    low, high = p.low, p.high
+    if word == "travel":
+        low = least_travel(problem.runs)
+    elif word == "resolution":
+        # What the sensor shows of a sharp break-away; a blunter one is presliding and has to be named as such.
+        low, high = float(points[0]), float(points[-1])
     tried: dict[float, State] = {best.terms.inner[name][i]: best}
 
     def at(value: float) -> float:
-        value = float(np.clip(value, p.low, p.high))
+        value = float(np.clip(value, low, high))
         if value not in tried:
             inner = list(best.terms.inner[name])
             inner[i] = value

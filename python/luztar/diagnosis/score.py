@@ -18,6 +18,7 @@ import numpy as np
 from .chance import p_values, signs, studentised
 from .floor import hats, travel_since_reversal
 from .prepare import Prepared
+from .terms import least_delay_s
 
 # Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
 POSITION_CELLS = 12
@@ -97,6 +98,8 @@ def detect(
     runs: Sequence[Prepared],
     model_columns: Sequence[np.ndarray],
     candidates: Sequence[Feature],
+    shift: Sequence[np.ndarray],
+    level: float,
 ) -> Detection:
     """Test whether something is missing from a model.
 
@@ -107,10 +110,14 @@ def detect(
         The fitted model's columns and derivatives by its inner parameters, the measurement last.
     candidates : sequence of Feature
         What each candidate would add; several features may carry the same name.
+    shift : sequence of ndarray, shape (n,)
+        What a shift of the reversals adds, per second and unit of friction level.
+    level : float
+        The friction level.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
     features = [*candidates, *cells(runs)]
-    scores = _scores(runs, model_columns, features)
+    scores = _scores(runs, model_columns, features, shift, level)
     live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
     flips = signs(len(strokes))
     lack = {"state", "time", "reversal"}
@@ -147,7 +154,11 @@ def detect(
 
 
 def _scores(
-    runs: Sequence[Prepared], model_columns: Sequence[np.ndarray], features: Sequence[Feature]
+    runs: Sequence[Prepared],
+    model_columns: Sequence[np.ndarray],
+    features: Sequence[Feature],
+    shift: Sequence[np.ndarray],
+    level: float,
 ) -> list[np.ndarray]:
     """Return the scores of every feature, each of shape (strokes, q)."""
     out: list[np.ndarray] = [np.empty(0)] * len(features)
@@ -158,6 +169,12 @@ def _scores(
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
         table = np.concatenate([m[k] for m, k in zip(model_columns, keep, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
+        if inside:
+            late = np.concatenate([z[k] for z, k in zip(shift, keep, strict=True)])[:, None]
+            # All starts may be seen a little late or early together; that is the sensor's, not a missing effect.
+            common = np.linalg.lstsq(np.hstack([basis, late]), response, rcond=None)[0][-1]
+            if abs(common) <= least_delay_s(runs) * level:
+                basis = np.hstack([basis, late])
         q, _ = np.linalg.qr(_scaled(basis))
         residual = response - q @ (q.T @ response)
         owner = np.concatenate([_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)])

@@ -15,7 +15,10 @@ from .prepare import Prepared
 
 # Points of a search grid. Speeds, travels and times are searched geometrically: a factor of 1.3 between points loses
 # less than 1 % of the effect's power before the refinement.
-_POINTS = {"speed": 14, "travel": 20, "time": 7, "delay": 27, "place": 13, "width": 5, "resolution": 7}
+_POINTS = {"speed": 14, "travel": 20, "time": 7, "delay": 20, "place": 13, "width": 5, "resolution": 7}
+
+# A travel below this many steps of the position sensor is no travel to speak of.
+SHOWN_STEPS = 2.5
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,18 @@ def start_terms(model: Model, runs: Sequence[Prepared]) -> Terms:
     return Terms(model.effects, inner)
 
 
+def least_travel(runs: Sequence[Prepared]) -> float:
+    """Return the smallest gap or break-away that a position sensor shows: a smaller one is a sharp break-away."""
+    step = max(r.recording.resolution for r in runs)
+    reach = max(r.recording.range for r in runs)
+    return min(SHOWN_STEPS * step, 0.005 * reach)
+
+
+def least_delay_s(runs: Sequence[Prepared]) -> float:
+    """Return the smallest delay that can be told from the uncertain instants of the starts."""
+    return float(np.mean([s.onset_uncertainty_s for r in runs for s in r.strokes]))
+
+
 def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
     """Return the values at which an inner parameter is searched, from what the runs can show."""
     word, number = parameter.grid if parameter.grid else ("", 0.0)
@@ -83,7 +98,7 @@ def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
             # The slowest speed worth a law of its own: 1 % of the top speed, or what moves ten steps per second.
             return np.geomspace(max(0.015 * top_speed, 10 * step), 0.7 * top_speed, points)
         case "travel":
-            return np.geomspace(min(1.5 * step, 0.2 * number * reach), number * reach, points)
+            return np.geomspace(least_travel(runs), number * reach, points)
         case "resolution":
             return step * np.geomspace(0.25, 2.0, points)
         case "place":
@@ -93,7 +108,7 @@ def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
         case "time":
             return np.geomspace(2.0, max(4.0, max(r.duration_s for r in runs)), points)
         case "delay":
-            return np.linspace(parameter.low, parameter.high, points)
+            return np.linspace(parameter.high / points, parameter.high, points)
         case "count":
             return np.arange(parameter.low, parameter.high + 0.5)
         case "shape":

@@ -22,7 +22,7 @@ impl Law for Delay {
             symbol: "tau",
             meaning: "how late the torque is",
             role: Role::Inner(Grid::Delay),
-            low: -0.03,
+            low: 0.0,
             high: 0.1,
         }],
         per_turn: false,
