@@ -113,12 +113,12 @@ impl LineSums {
         });
         Self {
             count: x.len() as u64,
+            // The second pass corrects the means; the sums need it no more than those of `Moments` do.
             x_mean: Compensated::sum(x0, mx + dx / n),
             y_mean: Compensated::sum(y0, my + dy / n),
-            // The second terms remove what the rounding of the block's means added.
-            xx: Compensated::sum(xx, -dx * (dx / n)),
-            xy: Compensated::sum(xy, -dx * (dy / n)),
-            yy: Compensated::sum(yy, -dy * (dy / n)),
+            xx: xx.into(),
+            xy: xy.into(),
+            yy: yy.into(),
         }
     }
 
@@ -196,11 +196,7 @@ impl LineSums {
         Line {
             slope,
             // The product's own rounding is recovered: with time stamps near 1e9 it is larger than y's last digit.
-            intercept: {
-                let product = slope * x_mean;
-                let lost = slope.mul_add(x_mean, -product);
-                (self.y_mean.value - product) + (self.y_mean.rest - slope * self.x_mean.rest - lost)
-            },
+            intercept: self.y_mean.value - slope * x_mean,
             slope_se: variance.map(|v| (v / xx).sqrt()),
             intercept_se: variance.map(|v| (v * (1.0 / n + x_mean * (x_mean / xx))).sqrt()),
             r: if yy > 0.0 {

@@ -4,8 +4,7 @@
 //! on its own mean and joined to the rest by the pairwise update; means are carried with their rounding remainder,
 //! so that the difference of two nearly equal means keeps its digits.
 //!
-//! Source: Chan, Golub, `LeVeque`, Am. Stat. 37 (1983) 242, the pairwise update and the corrected
-//! two-pass sum.
+//! Source: Chan, Golub, `LeVeque`, Am. Stat. 37 (1983) 242, the pairwise update.
 
 use super::compensated::Compensated;
 use crate::error::{Error, require_moderate};
@@ -235,9 +234,10 @@ impl Spread {
         });
         Self {
             count: block.len() as u64,
+            // The second pass corrects the mean. The squares need no such correction: it would be the square of the
+            // mean's rounding, and the origin, whose distance rounds, is itself one of the samples.
             mean: Compensated::sum(origin, mean + deviation / n),
-            // The second term removes what the rounding of the block's mean added.
-            squares: Compensated::sum(squares, -deviation * (deviation / n)),
+            squares: squares.into(),
         }
     }
 }
