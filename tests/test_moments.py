@@ -17,7 +17,9 @@ from luztar.errors import ParameterError
 
 EPS = np.finfo(np.float64).eps
 
-samples = arrays(np.float64, st.integers(1, 2000), elements=st.floats(-1e6, 1e6), fill=st.floats(-1e6, 1e6))
+# Squares of values below 1e-150 underflow in NumPy's way of taking the rms; such records are tested elsewhere.
+values = st.floats(-1e6, 1e6).map(lambda v: v if abs(v) > 1e-150 else 0.0)
+samples = arrays(np.float64, st.integers(1, 2000), elements=values, fill=values)
 
 
 def digits(found: float, certified: float) -> float:
@@ -77,9 +79,11 @@ def test_moments_are_those_of_numpy(x: np.ndarray) -> None:
     largest = np.abs(x).max()
     # numpy's own pairwise sums round by log2(n) <= 11 epsilons of the largest sample
     tolerance = 16 * EPS * largest
+    # and its squares, summed by the hundred before the pairs begin, by at most 128 epsilons of themselves
+    of_squares = 128 * EPS
     assert d.mean == pytest.approx(x.mean(), rel=0, abs=tolerance)
-    assert d.std_population == pytest.approx(x.std(), rel=1e-13, abs=tolerance)
-    assert d.rms == pytest.approx(np.sqrt(np.mean(x * x)), rel=1e-13, abs=tolerance)
+    assert d.std_population == pytest.approx(x.std(), rel=of_squares, abs=tolerance)
+    assert d.rms == pytest.approx(np.sqrt(np.mean(x * x)), rel=of_squares, abs=tolerance)
     assert (d.count, d.min, d.max) == (x.size, x.min(), x.max())
     assert (d.min_index, d.max_index) == (x.argmin(), x.argmax())
 

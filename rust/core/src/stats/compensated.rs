@@ -10,6 +10,12 @@ pub(crate) struct Compensated {
     pub(crate) rest: f64,
 }
 
+impl From<f64> for Compensated {
+    fn from(value: f64) -> Self {
+        Self { value, rest: 0.0 }
+    }
+}
+
 impl Compensated {
     /// The exact sum of two doubles.
     pub(crate) fn sum(a: f64, b: f64) -> Self {
