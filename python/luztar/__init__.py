@@ -12,9 +12,15 @@ from . import errors as errors
 from ._core import __version__ as __version__
 
 if TYPE_CHECKING:
-    pass
+    from . import regression as regression
+    from . import signal as signal
+    from . import stats as stats
 
-_LAZY: dict[str, str] = {}
+_LAZY: dict[str, str] = {
+    "regression": "regression",
+    "signal": "signal",
+    "stats": "stats",
+}
 
 
 def __getattr__(name: str) -> object:

@@ -28,23 +28,73 @@ def vector(name: str, values: Any, *, minimum: int = 1, finite: bool = True) -> 
     ParameterError
         Names the argument and, for NaN, the first positions.
     """
-    if isinstance(values, np.ma.MaskedArray):
-        raise ParameterError(f"{name} is a masked array", name, "Fill or drop the masked values first.")
-    array = np.asarray(values)
-    if array.dtype.kind not in "fiub":
-        raise ParameterError(f"{name} has the type {array.dtype}", name, "Give real numbers.")
+    array = _real(name, values)
     if array.ndim != 1:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give a one-dimensional array.")
     if array.size < minimum:
         raise ParameterError(f"{name} holds {array.size} values", name, f"Give at least {minimum}.")
     array = np.require(array, np.float64, ["C", "A"])
-    if finite and not np.isfinite(array).all():
-        at = np.flatnonzero(~np.isfinite(array))
-        shown = ", ".join(str(i) for i in at[:10])
-        more = f" and {at.size - 10} more" if at.size > 10 else ""
-        raise ParameterError(
-            f"{name} holds {at.size} values that are not finite, at index {shown}{more}",
-            name,
-            "Remove them or split the record there.",
-        )
+    if finite:
+        _refuse_not_finite(name, array)
     return array
+
+
+def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int, ...]]:
+    """Return ``values`` as contiguous float64 rows, one per record along ``axis``, and the shape with ``axis`` last.
+
+    Raises
+    ------
+    ParameterError
+        As :func:`vector`, or an axis that the array does not have.
+    """
+    array = _real(name, values)
+    if array.ndim == 0 or array.size == 0:
+        raise ParameterError(f"{name} has the shape {array.shape}", name, "Give at least one sample.")
+    if not -array.ndim <= axis < array.ndim:
+        raise ParameterError(f"axis is {axis}", "axis", f"{name} has {array.ndim} dimensions.")
+    array = np.moveaxis(array, axis, -1)
+    rows = np.require(array, np.float64, ["C", "A"]).reshape(-1, array.shape[-1])
+    _refuse_not_finite(name, rows)
+    return rows, array.shape
+
+
+def writable(name: str, out: Any, shape: tuple[int, ...], *, contiguous: bool = True) -> np.ndarray:
+    """Return ``out`` if a float64 result of this shape can be written into it.
+
+    Raises
+    ------
+    ParameterError
+        Not an array, of another type or shape, read-only, or not contiguous where that is needed.
+    """
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != shape:
+        found = f"{out.dtype} {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise ParameterError(f"{name} is {found}", name, f"Give a float64 array of the shape {shape}.")
+    if not out.flags.writeable or (contiguous and not (out.flags.c_contiguous and out.flags.aligned)):
+        raise ParameterError(f"{name} cannot be written as it lies", name, "Give a contiguous, writeable array.")
+    return out
+
+
+def _real(name: str, values: Any) -> np.ndarray:
+    if isinstance(values, np.ma.MaskedArray):
+        raise ParameterError(f"{name} is a masked array", name, "Fill or drop the masked values first.")
+    try:
+        array = np.asarray(values)
+    except ValueError as ragged:
+        raise ParameterError(f"{name} is not an array: {ragged}", name, "Give real numbers.") from None
+    if array.dtype.kind not in "fiub":
+        raise ParameterError(f"{name} has the type {array.dtype}", name, "Give real numbers.")
+    return array
+
+
+def _refuse_not_finite(name: str, array: np.ndarray) -> None:
+    good = np.isfinite(array)
+    if good.all():
+        return
+    at = np.argwhere(~good)
+    shown = ", ".join(str(int(i[0])) if len(i) == 1 else str(tuple(map(int, i))) for i in at[:10])
+    more = f" and {len(at) - 10} more" if len(at) > 10 else ""
+    raise ParameterError(
+        f"{name} holds {len(at)} values that are not finite, at index {shown}{more}",
+        name,
+        "Remove them or split the record there.",
+    )

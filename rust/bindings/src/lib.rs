@@ -2,12 +2,22 @@
 #![allow(missing_docs, clippy::needless_pass_by_value)]
 
 mod error;
+mod regression;
+mod signal;
+mod stats;
 
 use pyo3::prelude::*;
 
 #[pymodule(gil_used = false)]
 mod _core {
     use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::regression::{LineSums, fit_line};
+    #[pymodule_export]
+    use crate::signal::{Filter, LowPass, zero_phase};
+    #[pymodule_export]
+    use crate::stats::Moments;
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -72,6 +72,27 @@ pub fn require_finite(name: &'static str, values: &[f64]) -> Result<(), Error> {
     }
 }
 
+/// The largest magnitude a sample may have: its square and the sum of many squares still fit into a double.
+pub const LARGEST: f64 = 1e150;
+
+/// Refuses NaN, infinities and magnitudes above [`LARGEST`], whose squares or differences would overflow.
+///
+/// # Errors
+/// [`Error::NonFinite`] or [`Error::OutOfRange`] with the first offender.
+pub fn require_moderate(name: &'static str, values: &[f64]) -> Result<(), Error> {
+    // Without an early exit the comparison vectorises; the offender is looked for only if there is one.
+    if values.iter().fold(true, |ok, v| ok & (v.abs() <= LARGEST)) {
+        return Ok(());
+    }
+    require_finite(name, values)?;
+    let value = values.iter().copied().find(|v| v.abs() > LARGEST);
+    Err(Error::OutOfRange {
+        name,
+        value: value.unwrap_or(f64::NAN),
+        interval: format!("[-{LARGEST:e}, {LARGEST:e}]"),
+    })
+}
+
 /// Refuses two lengths that differ.
 ///
 /// # Errors

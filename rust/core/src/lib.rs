@@ -5,5 +5,8 @@
 
 pub mod error;
 pub mod projections;
+pub mod regression;
+pub mod signal;
+pub mod stats;
 
 pub use error::Error;

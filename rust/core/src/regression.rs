@@ -1,0 +1,5 @@
+//! Least squares.
+
+pub mod line;
+
+pub use line::{Line, LineSums, fit_line};
