@@ -154,8 +154,8 @@ def find(angle_deg: np.ndarray, speed_deg_s: np.ndarray, rules: RuleSet) -> list
                 ends_beyond=reaches(last, direction, rules),
                 start_deg=first,
                 end_deg=last,
-                max_speed_deg_s=float(np.max(np.abs(speed_deg_s[inside]))),
-                turned_back_deg=float(np.max(np.maximum.accumulate(along) - along)),
+                max_speed_deg_s=float(np.max(np.abs(speed_deg_s[inside]), initial=0.0)),
+                turned_back_deg=float(np.max(np.maximum.accumulate(along) - along, initial=0.0)),
             )
         )
     return crossings

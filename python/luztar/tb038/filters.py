@@ -69,9 +69,7 @@ def low_pass(x: np.ndarray, sample_rate_hz: float, rules: RuleSet, reading: str)
     if reading == "four_forward_four_backward":
         return signal.zero_phase(x, sample_rate_hz=sample_rate_hz, cutoff_hz=rules.cutoff_hz, poles=4)
     if reading == "four_forward":
-        causal = signal.Filter(sample_rate_hz=sample_rate_hz, cutoff_hz=rules.cutoff_hz, poles=4)
-        # Filtering the departure from the first sample starts the filter settled at that level, not at zero.
-        return causal.push(x - x[0]) + x[0]
+        return signal.causal(x, sample_rate_hz=sample_rate_hz, cutoff_hz=rules.cutoff_hz, poles=4)
     raise ValueError(f"unknown filter reading {reading!r}")
 
 

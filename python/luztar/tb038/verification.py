@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +12,12 @@ from .crossings import Crossing
 from .record import Piece, Record
 from .rules import Judgement, RuleSet, judge
 
-# Means and deviations are compared after rounding to 1e-12 Nm: the filter and the sums round at about 1e-14 Nm, so that a
-# level of exactly 1.5 Nm could otherwise fall on either side. `judge` itself compares to the last bit.
+if TYPE_CHECKING:
+    from ..stats import Moments
+
+# Means and deviations of a torque that varies are compared after rounding to 1e-12 Nm: the filter and the sums round at
+# about 1e-14 Nm, so that a level of exactly 1.5 Nm could otherwise fall on either side. A constant torque passes both
+# unchanged and is compared to the last bit, as `judge` always does.
 ROUNDING_DECIMALS = 12
 # Slower than this the wheel is held rather than turned, and friction at rest may carry any torque up to its level.
 REST_DEG_S = 1.0
@@ -103,7 +107,7 @@ def verify(
 
     reading = reading or rules.reading
     parts = pooled(record, direction)
-    doubts = list(record.doubts[direction])
+    doubts = [doubt.text for doubt in record.doubts[direction]]
     word = DIRECTION_WORD[direction]
     if not parts:
         return _without_samples(record.name, word, doubts)
@@ -112,7 +116,7 @@ def verify(
     moving = np.concatenate([np.abs(p.speed_deg_s[c.inside]) >= REST_DEG_S for p, c in parts])
     moments = stats.Moments()
     moments.push(direction * torque)
-    mean, std = _rounded(moments.mean), _rounded(moments.std_population)
+    mean, std = _settled(moments)
     line = regression.line(angle, torque)
     found = judge(mean, std, rules)
     doubts += _doubt_rest(direction * torque, moving, found, rules)
@@ -153,7 +157,7 @@ def _doubt_rest(signed_nm: np.ndarray, moving: np.ndarray, found: Judgement, rul
 
     moments = stats.Moments()
     moments.push(np.ascontiguousarray(signed_nm[moving]))
-    if judge(_rounded(moments.mean), _rounded(moments.std_population), rules) == found:
+    if judge(*_settled(moments), rules) == found:
         return []
     share = 100.0 * (1.0 - float(moving.mean()))
     return [f"the wheel rested inside the window ({share:.0f} % of the samples), and the verdict rests on that"]
@@ -166,7 +170,9 @@ def _reasons(mean: float, std: float, found: Judgement, rules: RuleSet) -> list[
     if not found.above_min:
         reasons.append(f"mean {mean:.6g} Nm does not exceed {rules.mean_above_nm:g} Nm ({rules.section('mean_above')})")
     if not found.steady:
-        reasons.append(f"standard deviation {std:.6g} Nm is not below {rules.std_below_nm:g} Nm ({rules.section('std')})")
+        reasons.append(
+            f"standard deviation {std:.6g} Nm is not below {rules.std_below_nm:g} Nm ({rules.section('std')})"
+        )
     return reasons
 
 
@@ -178,8 +184,11 @@ def _without_samples(run: str, direction: str, doubts: list[str]) -> Verificatio
     )
 
 
-def _rounded(value: float | None) -> float:
-    return math.nan if value is None else round(float(value), ROUNDING_DECIMALS)
+def _settled(moments: Moments) -> tuple[float, float]:
+    mean, std = moments.mean, moments.std_population
+    if mean is None or std is None:
+        return math.nan, math.nan
+    return (mean, std) if std == 0.0 else (round(mean, ROUNDING_DECIMALS), round(std, ROUNDING_DECIMALS))
 
 
 def _finite(value: Any) -> float | None:
