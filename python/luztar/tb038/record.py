@@ -144,9 +144,10 @@ def _doubt_whole_run(run: Run, doubts: _Doubts) -> None:
         # Uneven sampling is no fault of the data, but the filter is not defined on it.
         if finding.kind == "uneven":
             doubts.add(0, "uneven", f"uneven sampling: {finding.text}; export at a constant rate, or resample first")
-        elif finding.doubtful and finding.kind != "cut" and not _split_here(finding):
-            if finding.from_s is None and finding.to_s is None:
-                doubts.add(0, "data", finding.text)
+        elif finding.kind == "cut" and not run.integrity.complete:
+            continue
+        elif finding.doubtful and not _split_here(finding) and finding.from_s is None and finding.to_s is None:
+            doubts.add(0, "data", finding.text)
 
 
 def _split_here(finding: Finding) -> bool:
