@@ -12,14 +12,26 @@ from . import errors as errors
 from ._core import __version__ as __version__
 
 if TYPE_CHECKING:
+    from . import measurement as measurement
     from . import regression as regression
     from . import signal as signal
     from . import stats as stats
+    from . import tb038 as tb038
+    from .measurement.frame import read_frame as read_frame
+    from .measurement.read import read as read
+    from .measurement.run import Run as Run
+    from .measurement.runs import Runs as Runs
 
 _LAZY: dict[str, str] = {
+    "Run": "measurement.run:Run",
+    "Runs": "measurement.runs:Runs",
+    "measurement": "measurement",
+    "read": "measurement.read:read",
+    "read_frame": "measurement.frame:read_frame",
     "regression": "regression",
     "signal": "signal",
     "stats": "stats",
+    "tb038": "tb038",
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any
 
 
@@ -61,6 +62,8 @@ class Integrity:
     units : mapping of channel to (unit as read, unit as used)
     columns : mapping of channel to the column's name in the file
     findings : tuple of Finding
+    columns_found : tuple of str
+        Every column of the file, read or not; empty for arrays.
     """
 
     rows_declared: int | None
@@ -72,6 +75,7 @@ class Integrity:
     units: dict[str, tuple[str, str]] = field(default_factory=dict)
     columns: dict[str, str] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+    columns_found: tuple[str, ...] = ()
 
     @property
     def evenly_sampled(self) -> bool:
@@ -95,4 +99,13 @@ class Integrity:
             "units": {k: {"read": a, "used": b} for k, (a, b) in self.units.items()},
             "columns": dict(self.columns),
             "findings": [f.to_dict() for f in self.findings],
+            "columns_found": list(self.columns_found),
         }
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(f.kind)}</td><td>{'doubtful' if f.doubtful else ''}</td><td>{escape(f.text)}</td></tr>"
+            for f in self.findings
+        )
+        state = "complete" if self.complete else "<b>not complete</b>"
+        return f"<p>{self.rows_read} rows, {state}</p><table>{rows}</table>"
