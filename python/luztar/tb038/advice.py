@@ -9,7 +9,7 @@ from .record import Record
 from .rules import RuleSet, judge
 from .verification import Verification
 
-# A hysteresis centre below this is not worth a sentence unless it decides: the size at which a pattern counts as prominent.
+# A hysteresis centre below this is not worth a sentence unless it decides (the size at which a pattern is prominent).
 OFFSET_WORTH_SAYING_NM = 0.1
 # A mean beyond ten times the limit, or a tenth of the lower one, is more often a unit than a robot.
 UNIT_FACTOR = 10.0
@@ -52,31 +52,33 @@ def advise(
     cured = _cured_by_centring([*too_high, *too_low], centred, rules)
     if cured and offset_nm is not None:
         lines.append(
-            f"Shift the analogue offset by {-offset_nm:+.3f} Nm and take the readings again ({section('shift_offset')}): "
-            f"the hysteresis is centred at {offset_nm:+.3f} Nm, and about 0 every mean would be within the limits. "
-            "The option to centre shows this on the data at hand."
+            f"Shift the analogue offset by {-offset_nm:+.3f} Nm and take the readings again "
+            f"({section('shift_offset')}): the hysteresis is centred at {offset_nm:+.3f} Nm, and about 0 every mean "
+            "would be within the limits. The option to centre shows this on the data at hand."
         )
     elif offset_nm is not None and abs(offset_nm) >= OFFSET_WORTH_SAYING_NM:
         lines.append(
-            f"The hysteresis is centred at {offset_nm:+.3f} Nm; the analogue offset may be shifted by {-offset_nm:+.3f} Nm "
-            f"before the readings ({section('shift_offset')}). Check that the load cell was zeroed ({section('zero_load_cell')})."
+            f"The hysteresis is centred at {offset_nm:+.3f} Nm; the analogue offset may be shifted by "
+            f"{-offset_nm:+.3f} Nm before the readings ({section('shift_offset')}). Check that the load cell was "
+            f"zeroed ({section('zero_load_cell')})."
         )
     if too_high and not cured:
         lines.append(
-            f"The friction is too high: loosen the two thumb screws of the motor assembly by a quarter turn and take the "
-            f"readings again ({section('loosen_screws')})."
+            f"The friction is too high: loosen the two thumb screws of the motor assembly by a quarter turn and take "
+            f"the readings again ({section('loosen_screws')})."
         )
     if too_low and not cured:
         lines.append(
-            f"The friction is too low to stand for hands on the wheel ({section('mean_above')}): check that the robot is "
-            f"coupled and in free mode, then the load cell's sensitivity ({section('units')}) and the link distance "
+            f"The friction is too low to stand for hands on the wheel ({section('mean_above')}): check that the robot "
+            f"is coupled and in free mode, then the load cell's sensitivity ({section('units')}) and the link distance "
             f"({section('link_distance')})."
         )
     lines += _pattern(pattern, bool(unsteady), rules)
     if unsteady and not pattern.prominent:
         lines.append(
-            f"The friction is not steady ({section('std')}): look for a tight spot or a slope in the torque over angle, check "
-            f"that the load cell is at a right angle to the arm, and turn more evenly ({section('speed')})."
+            f"The friction is not steady ({section('std')}): look for a tight spot or a slope in the torque over "
+            "angle, check that the load cell is at a right angle to the arm, and turn more evenly "
+            f"({section('speed')})."
         )
     lines += _repeat(verifications, records, n_tests, same, rules)
     return tuple(lines)
@@ -87,19 +89,17 @@ def _units(verifications: Sequence[Verification], records: Sequence[Record], rul
     means = [abs(v.mean_nm) for v in verifications if v.mean_nm is not None]
     if means and (min(means) > UNIT_FACTOR * rules.mean_max_nm or max(means) < rules.mean_above_nm / UNIT_FACTOR):
         lines.append(
-            f"Every mean is {min(means):.3g} to {max(means):.3g} Nm: check the torque's unit, sensitivity and link distance "
-            f"({rules.section('units')}, {rules.section('link_distance')})."
+            f"Every mean is {min(means):.3g} to {max(means):.3g} Nm: check the torque's unit, sensitivity and link "
+            f"distance ({rules.section('units')}, {rules.section('link_distance')})."
         )
     for record in records:
         # A whole window in radians is 1.6; degrees taken for radians make it hundreds of turns.
         if record.angle_span_deg < 5.0:
-            lines.append(
-                f"{record.name}: the angle covers only {record.angle_span_deg:.3g} deg: are these radians read as degrees?"
-            )
+            covered = f"{record.angle_span_deg:.3g} deg"
+            lines.append(f"{record.name}: the angle covers only {covered}: are these radians read as degrees?")
         elif record.angle_span_deg > 3600.0:
-            lines.append(
-                f"{record.name}: the angle covers {record.angle_span_deg / 360.0:.0f} turns: are these degrees read as radians?"
-            )
+            covered = f"{record.angle_span_deg / 360.0:.0f} turns"
+            lines.append(f"{record.name}: the angle covers {covered}: are these degrees read as radians?")
     return lines
 
 
@@ -123,8 +123,8 @@ def _pattern(pattern: OncePerTurn, unsteady: bool, rules: RuleSet) -> list[str]:
     harm = "This also widens the standard deviation. " if unsteady else ""
     return [
         f"The torque varies with the angle as a once-per-turn pattern of {pattern.amplitude_nm:.2f} Nm would, but over "
-        f"{pattern.range_deg:.0f} deg a spring looks the same. {harm}Turn from -180 to 180 deg once to tell them apart; if it "
-        f"is once per turn, recentre the gear ring to the steering column ({step})."
+        f"{pattern.range_deg:.0f} deg a spring looks the same. {harm}Turn from -180 to 180 deg once to tell them apart; "
+        f"if it is once per turn, recentre the gear ring to the steering column ({step})."
     ]
 
 

@@ -1,7 +1,7 @@
 """Crossings of the window: where, and how soundly, the wheel went through it in one motion.
 
-A *stroke* runs between two reversals of the filtered angle that lie at least 5 degrees apart. Where a stroke overlaps the
-window it is a crossing; it is *full* where it starts beyond one edge and reaches the other.
+A *stroke* runs between two reversals of the filtered angle that lie at least 5 degrees apart. Where a stroke overlaps
+the window it is a crossing; it is *full* where it starts beyond one edge and reaches the other.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """The bulletin's "4-pole Butterworth, 6 Hz" and the three ways it is read.
 
-Section 2.1.3 says neither whether the filter runs forward only or also backward, nor whether "4 pole" counts one pass or
-both. The ruling is the usual meaning in crash testing: the data pass a two-pole filter twice, so that four poles act in
-total, without delay, with -3 dB at 6 Hz overall. The two other readings are computed beside it, and where they would give
-another verdict the result says so.
+Section 2.1.3 says neither whether the filter runs forward only or also backward, nor whether "4 pole" counts one pass
+or both. The ruling is the usual meaning in crash testing: the data pass a two-pole filter twice, so that four poles act
+in total, without delay, with -3 dB at 6 Hz overall. The two other readings are computed beside it, and where they would
+give another verdict the result says so.
 """
 
 from __future__ import annotations
@@ -13,10 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from .rules import RuleSet
-
-# Below this rate the low-pass has fewer than about 16 samples per period of its own cut-off, and protocols ask for 100 Hz
-# (Crash Avoidance - Lane Departure Collisions v1.1, 1.5: records at 100 Hz or more).
-ADVISED_RATE_HZ = 100.0
 
 
 class Reading(NamedTuple):

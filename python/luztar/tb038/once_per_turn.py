@@ -1,9 +1,9 @@
 """A torque that comes back once per turn (Annex I 12): how large, how sure, and whether this angle range can show it.
 
-Within about 60 degrees to either side the best straight line through a sine follows it to within 2 % of its variance:
-there a once-per-turn pattern and a spring are one curve, and the amplitude below is "what it would be if it were once per
-turn". From a range of 270 degrees on, a tenth of the sine's variance lies off the line, a slope is fitted beside the sine,
-and the two are told apart.
+Within 60 degrees to either side the best straight line through a sine leaves less than 0.3 % of its variance: there
+a once-per-turn pattern and a spring are one curve, and the amplitude below is what it would be if it were once per
+turn. At a range of 270 degrees the line leaves a tenth of the variance; from there on a slope is fitted beside the
+sine, and the two are told apart.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ class OncePerTurn:
 def once_per_turn(records: Sequence[Record], rules: RuleSet) -> OncePerTurn:
     """Fit a sine of one period per turn to the filtered torque of every stroke.
 
-    Each stroke has its own level (friction, offset and drift fall out); all share the sine, a viscous term (the speed of a
-    hand-turned wheel peaks in mid-stroke, much as a cosine does) and, where the range allows, a slope.
+    Each stroke has its own level (friction, offset and drift fall out); all share the sine, a viscous term (the speed
+    of a hand-turned wheel peaks in mid-stroke, much as a cosine does) and, where the range allows, a slope.
 
     Parameters
     ----------

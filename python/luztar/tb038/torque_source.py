@@ -23,9 +23,9 @@ class TorqueSource(NamedTuple):
 def torque_of(run: Run, link_distance_m: float) -> TorqueSource:
     """Return a run's torque.
 
-    A ``torque`` channel wins over ``force``: it is what the file calls torque, and multiplying again would apply the lever
-    twice. The exception is a torque that the robot only *estimated* (motor current) beside a measured force: 2.1.1 asks
-    for accurate torque measurement, so the load cell wins.
+    A ``torque`` channel wins over ``force``: it is what the file calls torque, and multiplying again would apply the
+    lever twice. The exception is a torque that the robot only *estimated* (motor current) beside a measured force:
+    2.1.1 asks for accurate torque measurement, so the load cell wins.
 
     Parameters
     ----------
