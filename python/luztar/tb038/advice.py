@@ -123,8 +123,8 @@ def _pattern(pattern: OncePerTurn, unsteady: bool, rules: RuleSet) -> list[str]:
     harm = "This also widens the standard deviation. " if unsteady else ""
     return [
         f"The torque varies with the angle as a once-per-turn pattern of {pattern.amplitude_nm:.2f} Nm would, but over "
-        f"{pattern.range_deg:.0f} deg a spring looks the same. {harm}Turn from -180 to 180 deg once to tell them apart; "
-        f"if it is once per turn, recentre the gear ring to the steering column ({step})."
+        f"{pattern.range_deg:.0f} deg a spring looks the same. {harm}Turn from -180 to 180 deg once to tell them "
+        f"apart; if it is once per turn, recentre the gear ring to the steering column ({step})."
     ]
 
 

@@ -16,10 +16,11 @@ from .rules import RuleSet
 STROKE_TRAVEL_DEG = 5.0
 # The same page's hysteresis: a turn back of up to 1 degree is a tremor of the hand, more is another motion.
 TURN_BACK_DEG = 1.0
-# Arithmetic rounding of a filtered angle; a record that rests at exactly 45 degrees does not start beyond them.
+# Arithmetic rounding of an angle converted from radians; a record that rests at exactly 45 degrees is not beyond them.
 ROUNDING_DEG = 1e-9
-# Rounding of a speed from a filtered angle: relative, so that a motion at exactly the limit is not over it.
-ROUNDING_RELATIVE = 1e-9
+# What a speed from an encoder of 0.02 degrees can resolve after the 6 Hz filter (0.03 deg/s at 500 Hz), rounded up: a
+# motion at exactly the limit is not over it.
+SPEED_RESOLUTION_DEG_S = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +74,7 @@ def reaches(angle_deg: float, direction: int, rules: RuleSet) -> bool:
 
 def too_fast(speed_deg_s: float, rules: RuleSet) -> bool:
     """Return whether a speed is over the limit; NaN counts as over it."""
-    return not bool(speed_deg_s <= rules.speed_max_deg_s * (1.0 + ROUNDING_RELATIVE))
+    return not bool(speed_deg_s <= rules.speed_max_deg_s + SPEED_RESOLUTION_DEG_S)
 
 
 def reversals(angle_deg: np.ndarray, travel_deg: float = STROKE_TRAVEL_DEG) -> list[int]:
@@ -119,13 +120,16 @@ def reversals(angle_deg: np.ndarray, travel_deg: float = STROKE_TRAVEL_DEG) -> l
     return found
 
 
-def find(angle_deg: np.ndarray, speed_deg_s: np.ndarray, rules: RuleSet) -> list[Crossing]:
+def find(
+    angle_deg: np.ndarray, raw_deg: np.ndarray, speed_deg_s: np.ndarray, sample_rate_hz: float, rules: RuleSet
+) -> list[Crossing]:
     """Return the crossings of the window in one evenly sampled stretch, in time order.
 
     Parameters
     ----------
-    angle_deg, speed_deg_s : ndarray, shape (n,) [deg], [deg/s]
-        The filtered angle and its rate.
+    angle_deg, raw_deg, speed_deg_s : ndarray, shape (n,) [deg], [deg], [deg/s]
+        The filtered angle, the angle as recorded, and the filtered angle's rate.
+    sample_rate_hz : float [Hz]
     rules : RuleSet
 
     Returns
@@ -135,6 +139,7 @@ def find(angle_deg: np.ndarray, speed_deg_s: np.ndarray, rules: RuleSet) -> list
     """
     half = rules.half_width_deg
     turning = reversals(angle_deg)
+    near = round(sample_rate_hz / rules.cutoff_hz)
     crossings = []
     for start, stop in zip(turning[:-1], turning[1:], strict=True):
         first, last = float(angle_deg[start]), float(angle_deg[stop])
@@ -144,13 +149,15 @@ def find(angle_deg: np.ndarray, speed_deg_s: np.ndarray, rules: RuleSet) -> list
         direction = 1 if last > first else -1
         inside = start + np.flatnonzero(np.abs(angle_deg[start : stop + 1]) <= half)
         along = direction * angle_deg[inside]
+        # The filter overshoots where a motion sets in abruptly: the recorded angle must have been beyond the edge too.
+        recorded = -direction * float(np.max(-direction * raw_deg[max(0, start - near) : start + near + 1]))
         crossings.append(
             Crossing(
                 direction=direction,
                 start=start,
                 stop=stop,
                 inside=inside,
-                starts_beyond=starts_beyond(first, direction, rules),
+                starts_beyond=starts_beyond(first, direction, rules) and starts_beyond(recorded, direction, rules),
                 ends_beyond=reaches(last, direction, rules),
                 start_deg=first,
                 end_deg=last,

@@ -180,7 +180,7 @@ def _filtered(
         reading: filters.low_pass(torque, rate_hz, rules, reading) for reading in (rules.reading, *rules.other_readings)
     }
     found = []
-    for crossing in _crossings.find(angle_deg, speed_deg_s, rules):
+    for crossing in _crossings.find(angle_deg, angle, speed_deg_s, rate_hz, rules):
         # Two samples make a line; a passage with fewer was far too fast for the clock.
         if crossing.inside.size < 2:
             doubts.add(crossing.direction, "speed", "a crossing has fewer than two samples inside the window")
