@@ -1,8 +1,8 @@
 """Hand-turned friction records with known figures, for the tests of TB 038 alone.
 
-The wheel goes back and forth between two angles at constant speed with rounded ends, or along a sine. Friction opposes the
-motion; while the wheel stands, the torque keeps its last value. Everything is an exact formula, so that a figure that
-comes out of luztar can be compared with the one that went in.
+The wheel goes back and forth between two angles at constant speed and rests at each end. Friction opposes the motion;
+while the wheel rests, the torque keeps its last value. Everything is an exact formula, so that a figure that comes out
+of luztar can be compared with the one that went in.
 """
 
 from __future__ import annotations

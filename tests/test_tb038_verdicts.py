@@ -9,9 +9,9 @@ import json
 
 import numpy as np
 import pytest
-import tb038_records as records
 
 import luztar
+import tb038_records as records
 from luztar import tb038
 from luztar.errors import MeasurementError, ParameterError
 

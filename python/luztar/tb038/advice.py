@@ -92,6 +92,11 @@ def _units(verifications: Sequence[Verification], records: Sequence[Record], rul
             f"Every mean is {min(means):.3g} to {max(means):.3g} Nm: check the torque's unit, sensitivity and link "
             f"distance ({rules.section('units')}, {rules.section('link_distance')})."
         )
+    for increasing, decreasing in zip(verifications[::2], verifications[1::2], strict=True):
+        # The half sum is the friction level whatever the offset; below zero the hysteresis loop runs the wrong way.
+        if increasing.mean_nm is not None and decreasing.mean_nm is not None:
+            if increasing.mean_nm + decreasing.mean_nm < 0.0:
+                lines.append(f"{increasing.run}: the hysteresis runs the wrong way: is the torque's sign reversed?")
     for record in records:
         # A whole window in radians is 1.6; degrees taken for radians make it hundreds of turns.
         if record.angle_span_deg < 5.0:

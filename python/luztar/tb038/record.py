@@ -213,7 +213,9 @@ def _doubt_crossing(
     if near_end:
         doubts.add(way, "broken", f"the record is broken just after {to_s:.3f} s, at {crossing.end_deg:.1f} deg")
     elif crossing.starts_beyond and not crossing.ends_beyond:
+        # Returning the wheel to the middle at the end is no test: it is neither pooled nor held against the run.
         notes.append(f"a crossing ends at {crossing.end_deg:.1f} deg, before the far edge, and is left out")
+        return
     if _crossings.too_fast(crossing.max_speed_deg_s, rules):
         limit = f"over {rules.speed_max_deg_s:g} deg/s ({rules.section('speed')})"
         doubts.add(way, "speed", f"{crossing.max_speed_deg_s:.1f} deg/s inside the window, {limit}")
