@@ -6,9 +6,12 @@ docs/tb038.md shows the same table with the reasons.
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import luztar
 import tb038_records as records
@@ -280,3 +283,47 @@ def test_a_run_without_torque_and_force_is_refused():
     t, angle, _ = records.turning()
     with pytest.raises(MeasurementError, match="neither torque nor force"):
         tb038.evaluate([luztar.Run(time=t, angle=angle, units={"angle": "deg"})])
+
+
+def test_the_page_in_docs_shows_this_table():
+    page = (Path(__file__).parents[1] / "docs" / "tb038.md").read_text(encoding="utf-8")
+    table = page[page.index("| case | verdict |") :].split("\n\n")[0].splitlines()[2:]
+    shown = [tuple(cell.strip() for cell in row.strip("|").split("|"))[:3] for row in table]
+    assert shown == [(name, verdict, each) for name, _, verdict, each, _ in CASES]
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    kind=st.sampled_from(["torque", "angle", "time", "cut out", "cut off", "shift", "scramble", "thin"]),
+    where=st.floats(0.0, 0.99),
+    width=st.integers(1, 400),
+    level=st.sampled_from([0.1, 1.7]),
+)
+def test_no_damage_turns_a_failing_run_into_a_pass(kind, where, width, level):
+    t, angle, sign = records.turning(rate_hz=100.0)
+    torque = records.torque(angle, sign, level_nm=level)
+    start = round(where * t.size)
+    part = slice(start, start + width)
+    keep = np.ones(t.size, bool)
+    if kind == "torque":
+        torque[part] = np.nan
+    elif kind == "angle":
+        angle[part] = np.nan
+    elif kind == "time":
+        t[part] = np.nan
+    elif kind == "cut out":
+        keep[part] = False
+    elif kind == "cut off":
+        keep[max(start, 10) :] = False
+    elif kind == "shift":
+        t[part] += 0.01 * width
+    elif kind == "scramble":
+        t[part] = t[part][::-1]
+    else:
+        keep[:] = np.random.default_rng(width).random(t.size) < 0.7
+    try:
+        damaged = records.as_run(t[keep], angle[keep], torque[keep])
+    except MeasurementError:
+        return
+    for v in tb038.evaluate([damaged]).verifications:
+        assert v.verdict in ("fail", "inconclusive")

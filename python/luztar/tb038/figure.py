@@ -20,7 +20,7 @@ MAX_POINTS = 4000
 def figure(check: Check) -> Any:
     """Return the check as a plotly figure; see :meth:`luztar.tb038.Check.figure`."""
     try:
-        import plotly.graph_objects as go
+        import plotly.graph_objects as go  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingError("figures need plotly", "figure", "pip install plotly") from error
 

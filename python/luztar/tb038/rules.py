@@ -189,12 +189,14 @@ def parse_rules(text: str, where: str = "rule set") -> RuleSet:
         checklist = tuple(CheckItem(str(item["step"]), str(item["text"])) for item in data.get("checklist", []))
     except (KeyError, TypeError) as error:
         raise ParameterError("a checklist item lacks its step or text", where, "Give both.") from error
-    whole = {key: int(numbers.pop(key)) for key in ("runs", "directions", "poles")}
+    runs, directions, poles = (_whole(numbers.pop(key), key, where) for key in ("runs", "directions", "poles"))
     return RuleSet(
         name=data["name"],
         title=data["title"],
         **numbers,
-        **whole,
+        runs=runs,
+        directions=directions,
+        poles=poles,
         reading=readings[0],
         other_readings=tuple(readings[1:]),
         sections=MappingProxyType({str(k): str(v) for k, v in data.get("sections", {}).items()}),
@@ -232,6 +234,12 @@ def _number(data: Mapping[str, Any], table: str, key: str, where: str, low: floa
     if not low <= value <= high:
         raise ParameterError(f"[{table}] {key} is {value!r}", where, f"It must lie from {low:g} to {high:g}.")
     return float(value)
+
+
+def _whole(value: float, key: str, where: str) -> int:
+    if value != int(value):
+        raise ParameterError(f"{key} is {value!r}", where, "Give a whole number.")
+    return int(value)
 
 
 def _refuse_unknown(data: Mapping[str, Any], where: str) -> None:

@@ -74,7 +74,7 @@ def split(time_s: np.ndarray, values: tuple[np.ndarray, ...]) -> list[Stretch]:
     closes = sound & np.concatenate((~joined, [True]))
     starts, stops = np.flatnonzero(opens), np.flatnonzero(closes) + 1
     n = time_s.size
-    return [Stretch(int(a), int(b), a > 0, b < n) for a, b in zip(starts, stops, strict=True)]
+    return [Stretch(int(a), int(b), bool(a > 0), bool(b < n)) for a, b in zip(starts, stops, strict=True)]
 
 
 def sample_rate_hz(time_s: np.ndarray) -> float:
