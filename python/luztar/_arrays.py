@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import numpy as np
@@ -50,12 +51,38 @@ def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int
     array = _real(name, values)
     if array.ndim == 0 or array.size == 0:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give at least one sample.")
-    if not -array.ndim <= axis < array.ndim:
-        raise ParameterError(f"axis is {axis}", "axis", f"{name} has {array.ndim} dimensions.")
+    axis = whole_number("axis", axis, -array.ndim, array.ndim - 1)
+    _refuse_not_finite(name, array)
     array = np.moveaxis(array, axis, -1)
     rows = np.require(array, np.float64, ["C", "A"]).reshape(-1, array.shape[-1])
-    _refuse_not_finite(name, rows)
     return rows, array.shape
+
+
+def number(name: str, value: Any) -> float:
+    """Return one real number; whether it is in range is for the callee to say.
+
+    Raises
+    ------
+    ParameterError
+        Not a number.
+    """
+    if isinstance(value, numbers.Real):
+        return float(value)
+    raise ParameterError(f"{name} is {value!r}", name, "Give a real number.")
+
+
+def whole_number(name: str, value: Any, low: int, high: int) -> int:
+    """Return a whole number in [low, high]; 4.0 is one, True is not.
+
+    Raises
+    ------
+    ParameterError
+        Not a whole number, or outside the interval.
+    """
+    whole = isinstance(value, numbers.Real) and not isinstance(value, bool) and value == value // 1
+    if whole and low <= value <= high:
+        return int(value)
+    raise ParameterError(f"{name} is {value!r}", name, f"Give a whole number from {low} to {high}.")
 
 
 def writable(name: str, out: Any, shape: tuple[int, ...], *, contiguous: bool = True) -> np.ndarray:

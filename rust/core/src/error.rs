@@ -80,8 +80,9 @@ pub const LARGEST: f64 = 1e150;
 /// # Errors
 /// [`Error::NonFinite`] or [`Error::OutOfRange`] with the first offender.
 pub fn require_moderate(name: &'static str, values: &[f64]) -> Result<(), Error> {
-    // Without an early exit the comparison vectorises; the offender is looked for only if there is one.
-    if values.iter().fold(true, |ok, v| ok & (v.abs() <= LARGEST)) {
+    // Blocks without an early exit vectorise; the offender is looked for only if there is one.
+    let moderate = |block: &[f64]| block.iter().fold(true, |ok, v| ok & (v.abs() <= LARGEST));
+    if values.chunks(64).all(moderate) {
         return Ok(());
     }
     require_finite(name, values)?;

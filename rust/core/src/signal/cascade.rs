@@ -141,10 +141,10 @@ impl Cascade {
             }
             for (pair, [band, low]) in pairs.iter().zip(&mut memory) {
                 let error = signal - *low;
-                let step = pair.cross * *band + pair.direct * error;
-                *band += pair.cross * error - pair.loss * *band;
-                signal = *low + 0.5 * step;
-                *low += step;
+                let next = (*low + pair.cross * *band) + pair.direct * error;
+                *band = (*band - pair.loss * *band) + pair.cross * error;
+                signal = 0.5 * (*low + next);
+                *low = next;
             }
             *out = finish(signal);
         }

@@ -28,12 +28,18 @@ pub struct Extreme {
 /// The moments of everything pushed so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moments {
+    spread: Spread,
+    min: Option<Extreme>,
+    max: Option<Extreme>,
+}
+
+/// What the pairwise update joins.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Spread {
     count: u64,
     mean: Compensated,
     /// The sum of squared deviations from the mean.
     squares: Compensated,
-    min: Option<Extreme>,
-    max: Option<Extreme>,
 }
 
 /// The numbers [`Moments::state`] needs.
@@ -53,84 +59,61 @@ impl Moments {
     pub fn push(&mut self, x: &[f64]) -> Result<(), Error> {
         require_moderate("x", x)?;
         for block in x.chunks(BLOCK) {
-            self.merge(&Self::of_block(block));
+            self.push_extremes(block);
+            self.spread.merge(&Spread::of_block(block));
         }
         Ok(())
     }
 
+    /// Updates the extremes before the block is counted; positions are looked for only where one is beaten.
+    fn push_extremes(&mut self, block: &[f64]) {
+        let (low, high) = lane_extremes(block);
+        let at = |value: f64| {
+            let inside = block.iter().position(|v| *v == value).unwrap_or(0);
+            let index = self.spread.count + inside as u64;
+            Some(Extreme { value, index })
+        };
+        if self.min.is_none_or(|old| low < old.value) {
+            self.min = at(low);
+        }
+        if self.max.is_none_or(|old| high > old.value) {
+            self.max = at(high);
+        }
+    }
+
     /// Adds the samples another object has seen, as if they came after this one's.
     pub fn merge(&mut self, later: &Self) {
-        if later.count == 0 {
-            return;
-        }
-        if self.count == 0 {
-            *self = *later;
-            return;
-        }
-        let (na, nb) = (self.count as f64, later.count as f64);
-        let total = na + nb;
-        let apart = later.mean.minus(self.mean);
-        self.mean.add(apart * (nb / total));
-        self.squares.add_compensated(later.squares);
-        self.squares.add(apart * apart * (na * (nb / total)));
         let shift = |e: Extreme| Extreme {
-            index: e.index + self.count,
+            index: e.index + self.spread.count,
             ..e
         };
         self.min = first_of(self.min, later.min.map(shift), |new, old| new < old);
         self.max = first_of(self.max, later.max.map(shift), |new, old| new > old);
-        self.count += later.count;
-    }
-
-    /// The moments of one non-empty block by two passes about its first sample.
-    fn of_block(block: &[f64]) -> Self {
-        let origin = block[0];
-        let n = block.len() as f64;
-        let [sum] = lane_sums(block, |v| [v - origin]);
-        let mean = sum / n;
-        let [deviation, squares] = lane_sums(block, |v| {
-            let d = (v - origin) - mean;
-            [d, d * d]
-        });
-        let (min, max) = block.iter().fold((origin, origin), |(low, high), v| {
-            (low.min(*v), high.max(*v))
-        });
-        let at = |value: f64| {
-            let index = block.iter().position(|v| *v == value).unwrap_or(0) as u64;
-            Some(Extreme { value, index })
-        };
-        Self {
-            count: block.len() as u64,
-            mean: Compensated::sum(origin, mean + deviation / n),
-            // The second term removes what the rounding of the block's mean added.
-            squares: Compensated::sum(squares, -deviation * (deviation / n)),
-            min: at(min),
-            max: at(max),
-        }
+        self.spread.merge(&later.spread);
     }
 
     /// How many samples.
     #[must_use]
     pub fn count(&self) -> u64 {
-        self.count
+        self.spread.count
     }
 
     /// The mean; None of nothing.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
-        (self.count > 0).then_some(self.mean.value)
+        (self.count() > 0).then_some(self.spread.mean.value)
     }
 
     /// The mean squared deviation, divided by `n`; None of nothing.
     #[must_use]
     pub fn variance_population(&self) -> Option<f64> {
-        (self.count > 0).then(|| self.sum_of_squares() / self.count as f64)
+        (self.count() > 0).then(|| self.sum_of_squares() / self.count() as f64)
     }
 
     /// The estimated variance, divided by `n - 1`; None below two samples.
     #[must_use]
     pub fn variance_sample(&self) -> Option<f64> {
-        (self.count > 1).then(|| self.sum_of_squares() / (self.count - 1) as f64)
+        (self.count() > 1).then(|| self.sum_of_squares() / (self.count() - 1) as f64)
     }
 
     /// The population standard deviation (TB 038); None of nothing.
@@ -149,7 +132,7 @@ impl Moments {
     #[must_use]
     pub fn rms(&self) -> Option<f64> {
         let variance = self.variance_population()?;
-        Some(self.mean.value.hypot(variance.sqrt()))
+        Some(self.spread.mean.value.hypot(variance.sqrt()))
     }
 
     /// The smallest sample and its first index; None of nothing.
@@ -167,7 +150,7 @@ impl Moments {
     /// The sum of squared deviations from the mean.
     #[must_use]
     pub fn sum_of_squares(&self) -> f64 {
-        self.squares.value.max(0.0)
+        self.spread.squares.value.max(0.0)
     }
 
     /// Mean, its remainder, squared deviations, their remainder, smallest, largest: with the count and the two
@@ -175,7 +158,7 @@ impl Moments {
     #[must_use]
     pub fn state(&self) -> [f64; STATE_LEN] {
         let value = |e: Option<Extreme>| e.map_or(0.0, |e| e.value);
-        let (mean, squares) = (self.mean, self.squares);
+        let Spread { mean, squares, .. } = self.spread;
         [
             mean.value,
             mean.rest,
@@ -211,12 +194,51 @@ impl Moments {
         let carried = |value, rest| Compensated { value, rest };
         let extreme = |value, index| Some(Extreme { value, index });
         Ok(Self {
-            count,
-            mean: carried(mean, mean_rest),
-            squares: carried(squares, squares_rest),
+            spread: Spread {
+                count,
+                mean: carried(mean, mean_rest),
+                squares: carried(squares, squares_rest),
+            },
             min: extreme(min, min_index),
             max: extreme(max, max_index),
         })
+    }
+}
+
+impl Spread {
+    fn merge(&mut self, later: &Self) {
+        if later.count == 0 {
+            return;
+        }
+        if self.count == 0 {
+            *self = *later;
+            return;
+        }
+        let (na, nb) = (self.count as f64, later.count as f64);
+        let total = na + nb;
+        let apart = later.mean.minus(self.mean);
+        self.mean.add(apart * (nb / total));
+        self.squares.add_compensated(later.squares);
+        self.squares.add(apart * apart * (na * (nb / total)));
+        self.count += later.count;
+    }
+
+    /// One non-empty block by two passes about its first sample.
+    fn of_block(block: &[f64]) -> Self {
+        let origin = block[0];
+        let n = block.len() as f64;
+        let [sum] = lane_sums(block, |v| [v - origin]);
+        let mean = sum / n;
+        let [deviation, squares] = lane_sums(block, |v| {
+            let d = (v - origin) - mean;
+            [d, d * d]
+        });
+        Self {
+            count: block.len() as u64,
+            mean: Compensated::sum(origin, mean + deviation / n),
+            // The second term removes what the rounding of the block's mean added.
+            squares: Compensated::sum(squares, -deviation * (deviation / n)),
+        }
     }
 }
 
@@ -236,8 +258,8 @@ fn first_of(
 /// Sums of several terms per sample, in independent lanes that are added at the end.
 fn lane_sums<const K: usize>(block: &[f64], terms: impl Fn(f64) -> [f64; K]) -> [f64; K] {
     let mut lanes = [[0.0; LANES]; K];
-    let mut chunks = block.chunks_exact(LANES);
-    for chunk in &mut chunks {
+    let (chunks, rest) = block.as_chunks::<LANES>();
+    for chunk in chunks {
         for (lane, v) in chunk.iter().enumerate() {
             let t = terms(*v);
             for k in 0..K {
@@ -246,13 +268,31 @@ fn lane_sums<const K: usize>(block: &[f64], terms: impl Fn(f64) -> [f64; K]) -> 
         }
     }
     let mut sums = lanes.map(|lane| lane.iter().sum());
-    for v in chunks.remainder() {
+    for v in rest {
         let t = terms(*v);
         for k in 0..K {
             sums[k] += t[k];
         }
     }
     sums
+}
+
+/// The smallest and the largest value of a non-empty block of finite numbers.
+fn lane_extremes(block: &[f64]) -> (f64, f64) {
+    // Written as comparisons: with no NaN to think of, each is one instruction.
+    let smaller = |a: f64, b: f64| if b < a { b } else { a };
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    let (mut low, mut high) = ([block[0]; LANES], [block[0]; LANES]);
+    let (chunks, rest) = block.as_chunks::<LANES>();
+    for chunk in chunks {
+        for lane in 0..LANES {
+            low[lane] = smaller(low[lane], chunk[lane]);
+            high[lane] = larger(high[lane], chunk[lane]);
+        }
+    }
+    let low = low.into_iter().chain(rest.iter().copied());
+    let high = high.into_iter().chain(rest.iter().copied());
+    (low.fold(block[0], smaller), high.fold(block[0], larger))
 }
 
 #[cfg(test)]
