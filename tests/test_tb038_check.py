@@ -169,3 +169,27 @@ def test_importing_tb038_loads_neither_scipy_nor_plotly_nor_pandas():
     assert (
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
     )
+
+
+def test_a_loop_that_runs_the_wrong_way_behind_a_large_offset_is_doubted():
+    # Negative friction of 0.3 Nm under an offset of 0.9 Nm: only one direction shows it.
+    check = tb038.evaluate(records.three(level_nm=-0.3, offset_nm=0.9))
+    assert check.verdict == "fail"
+    assert any("wrong way" in sentence for sentence in check.advice)
+    with pytest.raises(luztar.errors.MeasurementError, match="torque sign reversed"):
+        tb038.evaluate(records.three(level_nm=-0.3, offset_nm=0.9), centre=True)
+
+
+def test_a_load_cell_on_an_adc_channel_is_mapped_and_scaled(tmp_path):
+    paths = []
+    for seed in (1, 2, 3):
+        t, angle, sign = records.turning()
+        force = records.torque(angle, sign, seed=seed) / 0.52
+        path = tmp_path / f"run{seed}.csv"
+        records.write_csv(path, t, angle, force, head="time_s,SR Angle (deg),ADC6 (N)")
+        paths.append(path)
+    by_torque = tb038.evaluate(luztar.read(*paths, map={"angle": "SR Angle", "torque": "ADC6*0.52"}))
+    by_force = tb038.evaluate(luztar.read(*paths, map={"angle": "SR Angle", "force": "ADC6"}))
+    assert by_torque.verdict == by_force.verdict == "pass"
+    for a, b in zip(by_torque.verifications, by_force.verifications, strict=True):
+        assert a.mean_nm == pytest.approx(b.mean_nm, rel=1e-12)  # one rounding of the product per sample
