@@ -155,6 +155,14 @@ def test_the_figure_shows_traces_trends_and_limits():
     assert sorted({shape.y0 for shape in figure.layout.shapes}) == [-1.5, -0.2, 0.2, 1.5]
 
 
+def test_a_figure_of_many_crossings_stays_small_and_keeps_its_extremes():
+    check = tb038.evaluate([records.run(motion={"crossings": 24})])
+    figure = check.figure()
+    rising = [trace for trace in figure.data if trace.name == "run1.csv increasing"]
+    assert sum(len(trace.x) for trace in rising) <= 2100
+    assert max(max(trace.y) for trace in rising) == check.verifications[0].max_abs_nm
+
+
 def test_the_same_torque_under_several_names_is_said():
     runs = [records.run(1, name=name) for name in ("a.csv", "b.csv", "c.csv")]
     check = tb038.evaluate(runs)

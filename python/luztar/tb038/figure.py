@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +14,9 @@ if TYPE_CHECKING:
 
 # One colour-blind safe hue per run (Okabe and Ito); the direction is told by the dash of the trend line.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-# A screen shows no more columns than this; extremes are kept.
-MAX_POINTS = 4000
+# Points per verification, shared by its crossings: a screen has no more columns, and a report must stay small.
+MAX_POINTS = 2000
+MIN_POINTS_PER_CROSSING = 50
 
 
 def figure(check: Check) -> Any:
@@ -30,9 +32,10 @@ def figure(check: Check) -> Any:
     names = list(dict.fromkeys(v.run for v in check.verifications))
     colour = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
     shown: set[tuple[str, str]] = set()
+    crossings = Counter((trace.run, trace.direction) for trace in check.traces)
     for trace in check.traces:
-        angle, torque = thinned(trace)
         key = (trace.run, trace.direction)
+        angle, torque = thinned(trace, max(MAX_POINTS // crossings[key], MIN_POINTS_PER_CROSSING))
         picture.add_scatter(
             x=angle,
             y=torque,
@@ -73,12 +76,12 @@ def figure(check: Check) -> Any:
     return picture
 
 
-def thinned(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """Return a trace of at most ``MAX_POINTS`` points that keeps the least and greatest torque of every part."""
+def thinned(trace: Trace, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return a trace of about ``points`` points that keeps the least and greatest torque of every part."""
     n = trace.angle_deg.size
-    if n <= MAX_POINTS:
+    if n <= points:
         return trace.angle_deg, trace.torque_nm
-    edges = np.linspace(0, n, MAX_POINTS // 2 + 1).astype(int)
+    edges = np.linspace(0, n, points // 2 + 1).astype(int)
     kept: set[int] = {0, n - 1}
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         part = trace.torque_nm[a:b]
