@@ -24,19 +24,19 @@ if TYPE_CHECKING:
     from .measurement import read as read
     from .measurement import read_frame as read_frame
     from .model import Model as Model
-    from .diagnosis import compare as compare
-    from .diagnosis import diagnose as diagnose
-    from .diagnosis import fit as fit
-    from .diagnosis import study as study
+    from .study import compare as compare
+    from .study import diagnose as diagnose
+    from .study import fit as fit
+    from .study import study as study
 
 _LAZY: dict[str, str] = {
     "Model": "model:Model",
     "Run": "measurement:Run",
     "Runs": "measurement:Runs",
-    "compare": "diagnosis:compare",
-    "diagnose": "diagnosis:diagnose",
+    "compare": "study:compare",
+    "diagnose": "study:diagnose",
     "effects": "effects",
-    "fit": "diagnosis:fit",
+    "fit": "study:fit",
     "measurement": "measurement",
     "model": "model",
     "read": "measurement:read",
@@ -44,7 +44,7 @@ _LAZY: dict[str, str] = {
     "regression": "regression",
     "signal": "signal",
     "stats": "stats",
-    "study": "diagnosis:study",
+    "study": "study:study",
     "tb038": "tb038",
 }
 

@@ -10,7 +10,7 @@ import re
 
 from ..errors import MeasurementError
 from .columns import parse_header
-from .csv import _loader
+from .csv import loader
 from .rows import Block
 from .table import Table
 
@@ -66,4 +66,4 @@ def table_from_export(raw: bytes, where: str, *, sha256: str | None, broken_off:
     columns = [parse_header(i, name, units[i] or None) for i, name in enumerate(names)]
     decimal = "," if any("," in f and "." not in f for f in first) else "."
     block = Block(lines[4], "\t", decimal, n_fields, 5, where, headers, int(points), broken_off)
-    return Table(columns, _loader(block, int(points)), where, sha256)
+    return Table(columns, loader(block, int(points)), where, sha256)

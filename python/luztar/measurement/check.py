@@ -6,6 +6,7 @@ Each threshold stands here with its reason, and each finding says where.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypedDict
 
 import numpy as np
 
@@ -16,9 +17,11 @@ from .integrity import Finding
 # less than that, a lost sample makes it 2.
 GAP_STEPS = 1.5
 
-# Where more than one step in twenty is a "gap", the record was not sampled evenly to begin with (bus traffic, events)
-# and its long steps are its nature; then only a step of ten medians is a gap.
+# A record whose steps are no multiples of the median, for more than one step in twenty, was not sampled evenly to begin
+# with (bus traffic, events), and neither was one where every fifth step is long. Long steps are its nature; there only
+# a step of ten medians is a gap (one in a thousand where the moments are independent: 2^-10).
 UNEVEN_SHARE = 0.05
+LONG_SHARE = 0.2
 UNEVEN_GAP_STEPS = 10.0
 
 # A step may differ from the median by this part of it. Stamps rounded to 0.1 ms move a step by up to 0.1 ms: 10 % at
@@ -52,9 +55,17 @@ _MOVING = ("angle", "position", "handwheel", "roadwheel")
 Place = Callable[[int], str]
 
 
+class Steps(TypedDict):
+    """The sampling interval as found, s."""
+
+    dt_median_s: float | None
+    dt_min_s: float | None
+    dt_max_s: float | None
+
+
 def inspect(
     time_s: np.ndarray, channels: Mapping[str, np.ndarray], place: Place | None = None
-) -> tuple[np.ndarray, list[Finding], dict[str, float | None]]:
+) -> tuple[np.ndarray, list[Finding], Steps]:
     """Look through a run's numbers.
 
     Parameters
@@ -71,8 +82,7 @@ def inspect(
     time_s : ndarray, shape (n,) [s]
         The same, with stamps that are not finite filled from their neighbours (each one is a doubtful finding).
     findings : list of Finding
-    steps : dict
-        ``dt_median_s``, ``dt_min_s``, ``dt_max_s``.
+    steps : Steps
 
     Raises
     ------
@@ -135,10 +145,10 @@ def _span(a: int, b: int, where: Place) -> str:
     return where(a) if a == b else f"{where(a)} to {where(b)} ({b - a + 1} rows)"
 
 
-def _time_axis(time_s: np.ndarray, where: Place) -> tuple[list[Finding], dict[str, float | None]]:
+def _time_axis(time_s: np.ndarray, where: Place) -> tuple[list[Finding], Steps]:
     dt = np.diff(time_s)
     median = float(np.median(dt))
-    steps: dict[str, float | None] = {
+    steps: Steps = {
         "dt_median_s": median,
         "dt_min_s": float(dt.min()),
         "dt_max_s": float(dt.max()),
@@ -158,8 +168,10 @@ def _time_axis(time_s: np.ndarray, where: Place) -> tuple[list[Finding], dict[st
         text = f"the median time step is {median:.6g} s: the time column does not run forward"
         findings.append(Finding("uneven", text, True))
         return findings, steps
-    long = dt > GAP_STEPS * median
-    limit = UNEVEN_GAP_STEPS if long.mean() > UNEVEN_SHARE else GAP_STEPS
+    ratio = dt / median
+    odd = np.abs(ratio - np.maximum(np.round(ratio), 1.0)) > EVEN_STEP
+    irregular = odd.mean() > UNEVEN_SHARE or (ratio > GAP_STEPS).mean() > LONG_SHARE
+    limit = UNEVEN_GAP_STEPS if irregular else GAP_STEPS
     gaps = np.flatnonzero(dt > limit * median)
     found = []
     for i in gaps:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ..errors import MeasurementError
@@ -82,10 +82,12 @@ def table_from_text(data: bytes, where: str, *, sha256: str | None, broken_off: 
     block = Block(
         rows, dialect.separator, decimal, len(columns), dialect.first_line, where, dialect.headers, None, broken_off
     )
-    return Table(columns, _loader(block), where, sha256, _declared_rate(lines[: dialect.header_line - 1]))
+    return Table(columns, loader(block), where, sha256, _declared_rate(lines[: dialect.header_line - 1]))
 
 
-def _loader(block: Block, rows_declared: int | None = None):  # noqa: ANN202
+def loader(block: Block, rows_declared: int | None = None) -> Callable[[Sequence[int]], Loaded]:
+    """Return the function that turns the columns asked for into numbers."""
+
     def load(use: Sequence[int]) -> Loaded:
         read = read_rows(block, use)
         return Loaded(
@@ -108,10 +110,13 @@ def sniff(lines: Sequence[str], where: str) -> Dialect:
     if not any(line.strip() for line in lines):
         raise MeasurementError("the file is empty", where, "Export the record again.")
     found = None
-    for separator in _SEPARATORS:
-        first = _first_row(lines, separator)
-        if first is not None and (found is None or first[1] > found[1][1]):
-            found = (separator, first)
+    for with_text in (False, True):
+        for separator in _SEPARATORS:
+            first = _first_row(lines, separator, with_text)
+            if first is not None and (found is None or first[1] > found[1][1]):
+                found = (separator, first)
+        if found is not None:
+            break
     if found is None:
         raise MeasurementError(
             f"no row of numbers in the first {len(lines)} lines",
@@ -155,16 +160,24 @@ def _header_fields(line: str, separator: str) -> list[str]:
     return split(_COMMENT.sub("", line, count=1) if _COMMENT.match(line) else line, separator)
 
 
-def _first_row(lines: Sequence[str], separator: str) -> tuple[int, int] | None:
-    """Return the first line that is a row of numbers, and its number of fields."""
+def _first_row(lines: Sequence[str], separator: str, with_text: bool) -> tuple[int, int] | None:
+    """Return the first line that is a row of numbers, and its number of fields.
+
+    ``with_text`` allows columns of text (clock, status) beside at least two of numbers; the next line must be like it.
+    """
     for i, line in enumerate(lines):
         if not line.strip():
             continue
         fields = split(line, separator)
         numbers = sum(is_number(f) or is_number(f, ",") for f in fields)
         rest = sum(is_missing(f) for f in fields)
-        if numbers and numbers + rest == len(fields) and 2 * numbers >= len(fields):
-            following = next((split(later, separator) for later in lines[i + 1 :] if later.strip()), None)
+        following = next((split(later, separator) for later in lines[i + 1 :] if later.strip()), None)
+        if with_text:
+            if numbers >= 2 and following is not None and len(following) == len(fields):
+                more = sum(is_number(f) or is_number(f, ",") for f in following)
+                if more >= 2:
+                    return i, len(fields)
+        elif numbers and numbers + rest == len(fields) and 2 * numbers >= len(fields):
             if following is not None and len(following) != len(fields) and len(fields) == 1:
                 # A lone number in a preamble.
                 continue
@@ -192,7 +205,8 @@ def _header_above(lines: Sequence[str], row: int, separator: str, where: str) ->
         inside = [f for f in fields if f]
         known = sum(_units.find(f) is not None for f in inside)
         bracketed = bool(inside) and all(re.fullmatch(r"[\[(].*[\])]", f) for f in inside)
-        if len(names) == len(fields) and all(names[: len(inside)]) and (bracketed or 2 * known > len(inside)):
+        named = len(names) == len(fields) and all(name for name, unit in zip(names, fields, strict=True) if unit)
+        if named and (bracketed or 2 * known > len(inside)):
             return above[-2], fields
     return at, None
 

@@ -27,7 +27,8 @@ def read_frame(
     Parameters
     ----------
     frame : pandas.DataFrame, a mapping of names to arrays, or anything with ``columns`` and ``frame[name]``
-        Columns of one length. Values that are not finite keep their place and become findings.
+        Columns of one length; a time that is the index counts as a column. Values that are not finite keep their place
+        and become findings.
     units : mapping of channel to unit, optional
         Units where a column name has none.
     map : mapping of channel to ``"COLUMN"`` or ``"COLUMN*FACTOR"``, optional
@@ -51,6 +52,11 @@ def read_frame(
     names = list(frame) if isinstance(frame, Mapping) else list(getattr(frame, "columns", ()))
     if not names:
         raise ParameterError("the table has no columns", "frame", "Give a DataFrame or a mapping of names to arrays.")
+    if hasattr(frame, "reset_index") and getattr(frame.index, "name", None) is not None:
+        index = parse_header(0, str(frame.index.name))
+        if index.channel == "time" and all(parse_header(0, str(n)).channel != "time" for n in names):
+            frame = frame.reset_index()
+            names = list(frame.columns)
     columns = [parse_header(i, str(column)) for i, column in enumerate(names)]
     where = str(name)
 

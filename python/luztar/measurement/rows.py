@@ -159,7 +159,7 @@ def read_rows(block: Block, use: Sequence[int]) -> Columns:
     else:
         n_lines, complete = _declared(body, n_lines, block.limit, terminated, complete, findings)
     if block.broken_off:
-        findings.append(Finding("cut", f"the archive is truncated after {n_lines} whole lines of data", True))
+        findings.append(Finding("cut", f"the file breaks off after {n_lines} whole lines of data", True))
     keep = body.wanted_lines(n_lines, findings)
     if keep.size < 2:
         raise MeasurementError(
@@ -234,7 +234,7 @@ class _Body:
         odd = (first == 10) | (first == 35) | (first == 37)
         if self.separator != "\t":
             odd |= (first == 32) | (first == 9)
-        skip = [i for i in np.flatnonzero(odd) if not self.text(i).strip() or self.text(i).lstrip()[0] in "#%"]
+        skip = [i for i in np.flatnonzero(odd).tolist() if not self.text(i).strip() or self.text(i).lstrip()[0] in "#%"]
         if skip:
             at = ", ".join(str(i + self.block.first_line) for i in skip[:10])
             more = f" and {len(skip) - 10} more" if len(skip) > 10 else ""
@@ -364,19 +364,18 @@ def _declared(
 ) -> tuple[int, bool]:
     """Take the rows the file declares, and no line beyond them."""
     block = body.block
-    if n_lines > limit:
-        if body.is_row(limit):
+    n_rows = min(n_lines, limit)
+    open_end = n_rows == n_lines and not terminated
+    if n_rows == limit and body.is_row(limit - 1) and not (open_end and _looks_cut(body, limit - 1)):
+        if open_end:
+            text = "the last declared row has no line end; if the file was cut there, its last number may be short"
+            findings.append(Finding("note", text, False))
+        if n_lines > limit and body.is_row(limit):
             line = limit + block.first_line
             text = f"the file declares {limit} rows and goes on with numbers at line {line}; they were not read"
             findings.append(Finding("note", text, False))
         return limit, complete
-    if n_lines == limit and n_lines and (terminated or not _looks_cut(body, n_lines - 1)) and body.is_row(n_lines - 1):
-        if not terminated:
-            text = "the last declared row has no line end; if the file was cut there, its last number may be short"
-            findings.append(Finding("note", text, False))
-        return n_lines, complete
-    n_rows = n_lines
-    if n_rows and (not terminated or not body.is_row(n_rows - 1)):
+    if open_end:
         n_rows -= 1
     while n_rows and not body.is_row(n_rows - 1):
         n_rows -= 1
