@@ -24,19 +24,19 @@ if TYPE_CHECKING:
     from .measurement import read as read
     from .measurement import read_frame as read_frame
     from .model import Model as Model
-    from .study import compare as compare
-    from .study import diagnose as diagnose
-    from .study import fit as fit
-    from .study import study as study
+    from .diagnosis import compare as compare
+    from .diagnosis import diagnose as diagnose
+    from .diagnosis import fit as fit
+    from .diagnosis import study as study
 
 _LAZY: dict[str, str] = {
     "Model": "model:Model",
     "Run": "measurement:Run",
     "Runs": "measurement:Runs",
-    "compare": "study:compare",
-    "diagnose": "study:diagnose",
+    "compare": "diagnosis:compare",
+    "diagnose": "diagnosis:diagnose",
     "effects": "effects",
-    "fit": "study:fit",
+    "fit": "diagnosis:fit",
     "measurement": "measurement",
     "model": "model",
     "read": "measurement:read",
@@ -44,7 +44,7 @@ _LAZY: dict[str, str] = {
     "regression": "regression",
     "signal": "signal",
     "stats": "stats",
-    "study": "study:study",
+    "study": "diagnosis:study",
     "tb038": "tb038",
 }
 

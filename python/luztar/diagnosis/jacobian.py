@@ -23,17 +23,23 @@ class Inner:
     step: float
 
 
-def continuous(problem: Problem, fitted: State) -> list[Inner]:
-    """Return the inner parameters that were fitted and vary continuously."""
+def continuous(problem: Problem, fitted: State, sharpness: bool = False) -> list[Inner]:
+    """Return the inner parameters that were fitted and vary continuously.
+
+    With ``sharpness`` also a break-away sharper than the sensor shows, which no interval is given for.
+    """
     found = []
     for name in fitted.terms.effects:
         for i, p in enumerate(card(name, problem.model.structure_name).inner):
             if f"{name}.{p.key}" in problem.model.known or p.grid is None:
                 continue
-            if p.grid[0] in ("resolution", "shape", "count", "waves_per_range"):
+            if p.grid[0] in ("shape", "count", "waves_per_range") or (p.grid[0] == "resolution" and not sharpness):
+                continue
+            # Presliding replaces the break-away of Coulomb friction, which then does nothing.
+            if name == "coulomb" and "presliding" in fitted.terms.effects:
                 continue
             value = fitted.terms.inner[name][i]
-            if p.grid[0] in ("speed", "travel", "time", "width"):
+            if p.grid[0] in ("speed", "travel", "time", "width", "resolution"):
                 step = 0.05 * value
             else:
                 points = grid(p, problem.runs)

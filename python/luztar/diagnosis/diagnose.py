@@ -1,0 +1,201 @@
+"""One look at a fitted model: is something missing, and if so, what."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from .candidates import Candidate, gain, try_all
+from .chance import p_value_floor
+from .detect import detection
+from .experiment import Experiment, next_experiment
+from .fit import Fit
+from .intervals import Estimate
+from .score import Detection
+from .verdict import Judgement, judge
+from .where import Map, Regime, regimes, residual_map
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One candidate as the result shows it.
+
+    Attributes
+    ----------
+    effect : str
+    rms, held_out_rms : float
+        Error of the refitted model, from the losses of the comparison (reversal instants adjusted).
+    gain : float
+        Share of the held-out loss it takes away.
+    gain_errors : float
+        How many standard errors (paired by stroke) that is.
+    p_value : float or None
+        Adjusted over all candidates.
+    in_set, decoy : bool
+    same_as : str or None
+        The simpler effect it came out as.
+    parameters : dict of str to float
+        Best values of its parameters.
+    """
+
+    effect: str
+    rms: float
+    held_out_rms: float
+    gain: float
+    gain_errors: float
+    p_value: float | None
+    in_set: bool
+    decoy: bool
+    same_as: str | None
+    parameters: dict[str, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the candidate as the JSON interface prints it."""
+        return {
+            "effect": self.effect,
+            "rms": self.rms,
+            "held_out_rms": self.held_out_rms,
+            "p_value": self.p_value,
+            "in_set": self.in_set,
+            "decoy": self.decoy,
+            "same_as": self.same_as,
+            "parameters": self.parameters,
+            "gain": self.gain,
+            "gain_errors": self.gain_errors,
+        }
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What ``luztar.diagnose`` returns.
+
+    Attributes
+    ----------
+    fit : Fit
+        The model looked at.
+    judgement : Judgement
+    where : tuple of Regime
+    map : Map
+    candidates : tuple of Tried
+        By held-out error, decoys among them.
+    detection : Detection
+    next_experiment : Experiment or None
+    """
+
+    fit: Fit
+    judgement: Judgement
+    where: tuple[Regime, ...]
+    map: Map = field(repr=False)
+    candidates: tuple[Tried, ...]
+    detection: Detection
+    next_experiment: Experiment | None
+    found: tuple[Candidate, ...] = field(repr=False, default=())
+
+    @property
+    def verdict(self) -> str:
+        """The verdict's word."""
+        return self.judgement.verdict
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The effect named, or the set under ``one_of``."""
+        return self.judgement.named
+
+    @property
+    def parameters(self) -> dict[str, Estimate]:
+        """The fitted model's parameters."""
+        return self.fit.parameters
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the diagnosis as the JSON interface prints it."""
+        fit = self.fit
+        return {
+            "schema": 1,
+            "structure": fit.model.structure_name,
+            "effects": list(fit.model.effects),
+            "band_hz": fit.model.band_hz,
+            "verdict": self.verdict,
+            "named": list(self.named),
+            "why": self.judgement.why,
+            "noise_floor": fit.noise_floor.to_dict(),
+            "error": fit.error.to_dict(),
+            "parameters": {k: v.to_dict() for k, v in fit.parameters.items()},
+            "where": [r.to_dict() for r in self.where],
+            "candidates": [c.to_dict() for c in self.candidates],
+            "lack_of_fit": {"p_value": self.detection.lack_of_fit, "along": self.detection.along},
+            "p_value": self.detection.p_value,
+            "p_value_floor": p_value_floor(self.detection.strokes),
+            "strokes": self.detection.strokes,
+            "next_experiment": self.next_experiment.to_dict() if self.next_experiment else None,
+        }
+
+    def __str__(self) -> str:
+        from .words import diagnosis_text
+
+        return diagnosis_text(self)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f"<pre>{escape(str(self))}</pre>"
+
+    def figure(self) -> Any:
+        """Return a plotly figure: the candidates' held-out error, decoys beside them."""
+        from ..report.figures import candidates
+
+        return candidates(self)
+
+
+def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None) -> Diagnosis:
+    """Look once at a fitted model: test whether something is missing and try every effect of the catalogue.
+
+    Parameters
+    ----------
+    fitted : Fit
+        From ``luztar.fit``. Held-out runs given there are only predicted: they decide nothing here.
+    progress : callable, optional
+        Called with (done, total).
+    """
+    found, features = try_all(fitted, progress)
+    tested = detection(fitted, features)
+    judged = judge(fitted, found, tested)
+    return Diagnosis(
+        fit=fitted,
+        judgement=judged,
+        where=regimes(fitted),
+        map=residual_map(fitted),
+        candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
+        detection=tested,
+        next_experiment=next_experiment(fitted, judged),
+        found=tuple(found),
+    )
+
+
+def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> Tried:
+    state = c.search.best
+    assert state is not None
+    samples = max(int(state.blocks.samples.sum()), 1)
+    share, errors = gain(fitted.search, c.search)
+    return Tried(
+        effect=c.name,
+        rms=(c.search.loss / samples) ** 0.5,
+        held_out_rms=(c.held_out_loss / samples) ** 0.5,
+        gain=share,
+        gain_errors=errors,
+        p_value=tested.candidates.get(c.name),
+        in_set=c.name in judged.equivalent,
+        decoy=c.card.is_decoy,
+        same_as=judged.folded.get(c.name),
+        parameters=values_of(fitted, c),
+    )
+
+
+def values_of(fitted: Fit, c: Candidate) -> dict[str, float]:
+    """Return the best values of a candidate's own parameters."""
+    from .values import effect_values
+
+    assert c.search.best is not None
+    return effect_values(fitted.problem, c.search.best, c.name)
+
+

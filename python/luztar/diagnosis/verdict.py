@@ -1,0 +1,126 @@
+"""From candidates and tests to a verdict: what may be named, what may only be offered, what must be left open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, equivalent, gain
+from .chance import p_value_floor
+from .fit import Fit
+from .score import Detection
+from .terms import least_delay_s, least_travel
+
+# One level over all tests of a look.
+ALPHA = 0.05
+# Fewer strokes than this say nothing about chance; up to MANY_STROKES a name needs a gain in every fold.
+FEWEST_STROKES = 6
+MANY_STROKES = 10
+# More than this many candidates that cannot be told apart are no answer.
+LARGEST_SET = 3
+
+VERDICTS = (
+    "nothing_missing",
+    "named",
+    "one_of",
+    "unexplained",
+    "too_few_strokes",
+    "below_practical_size",
+)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdict of one look.
+
+    Attributes
+    ----------
+    verdict : str
+        One of :data:`VERDICTS`.
+    named : tuple of str
+        The best candidate, or the whole set under ``one_of``.
+    equivalent : tuple of str
+        Candidates the data cannot tell from the best, the best first.
+    folded : dict of str to str
+        Candidates that came out as a simpler one.
+    why : str
+    """
+
+    verdict: str
+    named: tuple[str, ...]
+    equivalent: tuple[str, ...]
+    folded: dict[str, str]
+    why: str
+
+
+def folded(fitted: Fit, found: Sequence[Candidate]) -> dict[str, str]:
+    """Return the candidates whose best values make them a simpler effect, with that effect's name."""
+    out = {}
+    for c in found:
+        state = c.search.best
+        if state is None:
+            continue
+        inner = state.terms.inner.get(c.name, ())
+        # Half above the smallest value: the search stops there, its least lies at or below it.
+        if c.name == "presliding" and inner[0] < 1.5 * least_travel(fitted.runs):
+            out[c.name] = "coulomb"
+        elif c.name == "freeplay" and inner[0] < 1.5 * least_travel(fitted.runs):
+            out[c.name] = "coulomb"
+        elif c.name == "delay" and inner[0] < least_delay_s(fitted.runs):
+            out[c.name] = "coulomb"
+    return out
+
+
+def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judgement:
+    """Decide what a look at the candidates allows to say."""
+    simpler = folded(fitted, found)
+    rivals = [c for c in found if c.name not in simpler]
+    strokes = detection.strokes
+    if strokes < FEWEST_STROKES:
+        return Judgement(
+            "too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed"
+        )
+    same = equivalent(rivals)
+    names = tuple(c.name for c in same)
+    best = rivals[0] if rivals else None
+    share, errors = gain(fitted.search, best.search) if best else (0.0, 0.0)
+    few = strokes < MANY_STROKES
+    detected = few or detection.p_value <= ALPHA
+    worth = best is not None and share >= PRACTICAL_GAIN and errors >= SET_ERRORS
+    if few and best is not None:
+        worth = worth_with_few(fitted, best, rivals)
+    if not detected:
+        return Judgement("nothing_missing", (), names, simpler, f"no test rejects at {100 * ALPHA:g} %")
+    own = best is not None and detection.candidates.get(best.name, 1.0) <= ALPHA
+    if worth and best is not None and (few or own or detection.lack_of_fit <= ALPHA):
+        if best.card.is_decoy:
+            return Judgement("unexplained", (), names, simpler, "a decoy without physics explains it best")
+        real = tuple(c.name for c in same if not c.card.is_decoy)
+        if len(real) == 1:
+            return Judgement("named", real, names, simpler, "")
+        if len(real) <= LARGEST_SET:
+            return Judgement("one_of", real, names, simpler, "the data do not tell these apart")
+        return Judgement("unexplained", (), names, simpler, f"{len(real)} effects explain it equally well")
+    if detection.lack_of_fit <= ALPHA and fitted.error.floor_ratio > 1.0 and not few:
+        return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
+    if few and not worth:
+        why = f"{strokes} strokes can give no p-value below {p_value_floor(strokes):.2g}"
+        return Judgement("nothing_missing", (), names, simpler, f"no effect gains in every fold; {why}")
+    return Judgement(
+        "below_practical_size", (), names, simpler, f"no effect takes {100 * PRACTICAL_GAIN:g} % off the unseen error"
+    )
+
+
+def worth_with_few(fitted: Fit, best: Candidate, rivals: Sequence[Candidate]) -> bool:
+    """Whether a candidate gains in every fold above the practical size and above the best decoy."""
+    folds = fitted.search.folds
+    decoys = [c for c in rivals if c.card.is_decoy]
+    for k in range(folds.count):
+        inside = folds.of_stroke == k
+        before = float(fitted.search.losses[inside].sum())
+        after = float(best.search.losses[inside].sum())
+        if after > (1.0 - PRACTICAL_GAIN) * before:
+            return False
+        if any(float(d.search.losses[inside].sum()) < after for d in decoys):
+            return False
+    return folds.count > 1
