@@ -213,6 +213,14 @@ class _Body:
         used = [fields[k] for k in self.use]
         return all(is_number(f, self.block.decimal) or is_missing(f) for f in used) and any(used)
 
+    def is_damaged_row(self, i: int) -> bool:
+        """Whether the line has the fields of a row and some of its numbers: "0.03;over", not "Mean;1.2"."""
+        fields = self.fields(i)
+        if len(fields) != self.block.n_fields:
+            return False
+        first = is_number(fields[0], self.block.decimal) == is_number(self.fields(0)[0], self.block.decimal)
+        return first and any(is_number(fields[k], self.block.decimal) for k in self.use)
+
     def begins_like_a_row(self, i: int) -> bool:
         """Whether the line can be the beginning of a row: no text where a number should stand."""
         fields = self.fields(i)
@@ -337,7 +345,7 @@ def _without_tail(
             text = f"the last line ({line}) has no line end; if the file was cut there, its last number may be short"
             findings.append(Finding("note", text, False))
     data_end = end
-    while data_end and not body.is_row(data_end - 1):
+    while data_end and not body.is_row(data_end - 1) and not body.is_damaged_row(data_end - 1):
         data_end -= 1
         if end - data_end > 100_000:
             line = data_end + block.first_line
