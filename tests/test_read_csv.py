@@ -327,3 +327,41 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, rows, separator,
     run = luztar.read(path)[0]
     assert run.integrity.complete
     assert [tuple(r) for r in zip(run["position"], run["force"], strict=True)] == rows
+
+
+alphabet = st.sampled_from(
+    [*"0123456789.,;\t\n\r\"'#%-+eE ()[]_°*/", "time_s", "angle_deg", "torque [Nm]", "nan", "inf", "\0", "ß"]
+)
+
+
+@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    head=st.sampled_from(["", "time_s,angle_deg\n0,1\n1,2\n", "x\nPoints=3\ntime\tangle\ns\tdeg\n0\t1\n"]),
+    tail=st.lists(alphabet, max_size=60),
+)
+def test_any_text_is_read_or_refused_with_a_remedy(tmp_path, head, tail):
+    path = tmp_path / "run.csv"
+    path.write_bytes((head + "".join(tail)).encode())
+    try:
+        run = luztar.read(path)[0]
+    except MeasurementError as error:
+        assert error.where
+        assert error.remedy
+    else:
+        run.to_dict()
+        assert len(run) >= 2
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(flips=st.lists(st.tuples(st.integers(0, 10_000), st.integers(0, 255)), min_size=1, max_size=5))
+def test_damaged_bytes_are_read_or_refused_with_a_remedy(tmp_path, flips):
+    data = bytearray(DIALECTS["units in brackets in a second row"].encode())
+    for at, byte in flips:
+        data[at % len(data)] = byte
+    path = tmp_path / "run.csv"
+    path.write_bytes(bytes(data))
+    try:
+        luztar.read(path)[0].to_dict()
+    except MeasurementError as error:
+        assert error.where
+        assert error.remedy
