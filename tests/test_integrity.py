@@ -47,6 +47,9 @@ VARIANTS = {
     "decimal commas": "time_s;angle_deg;torque_Nm\n" + rows_text(";", ","),
     "degree signs": "time [s];angle [°];torque [Nm]\n" + rows_text(";"),
     "trailing text": TEXT + "\nEnd of recörd\n",
+    "a column of text": "time_s,state,angle_deg,torque_Nm\n" + "".join(f"{t},OK,{a},{m:.3f}\n" for t, a, m in ROWS),
+    "a clock first": "clock,time_s,angle_deg,torque_Nm\n" + "".join(f"12:00:00,{t},{a},{m:.3f}\n" for t, a, m in ROWS),
+    "text last": "time_s,angle_deg,torque_Nm,state\n" + "".join(f"{t},{a},{m},OK\n" for t, a, m in ROWS),
     "two header rows": "time\tangle\ttorque\ns\tdeg\tNm\n" + rows_text("\t"),
 }
 
@@ -66,6 +69,12 @@ def test_a_file_cut_at_any_byte_never_passes_off_a_short_row(tmp_path, variant):
         ends_a_line = data[:size].endswith((b"\n", b"\r"))
         if not ends_a_line and len(run) < len(ROWS):
             assert run.integrity.findings
+            rest = data[:size].replace(b"\r", b"\n").rpartition(b"\n")[2]
+            n_whole = data[:size].replace(b"\r\n", b"\n").count(b"\n") - (2 if variant == "two header rows" else 1)
+            left_out = len(run) == n_whole
+            # A lone piece of clock text may be a footer: reported, and not called a cut.
+            lone_text = variant == "a clock first" and b"," not in rest
+            assert left_out != run.integrity.complete or lone_text
     assert n_read > 10
     assert len(run) == len(ROWS)
     assert run.integrity.complete
@@ -79,6 +88,16 @@ def test_fixed_decimals_make_every_cut_inside_a_row_a_doubtful_one(tmp_path):
         run = luztar.read(path)[0]
         assert (len(run), run.integrity.complete) == (4, False)
         assert [f.kind for f in run.integrity.doubtful] == ["cut"]
+
+
+def test_zeros_at_the_end_of_a_file_are_a_cut(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_bytes(TEXT.encode()[:-10] + bytes(500))
+    run = luztar.read(path)[0]
+    assert (len(run), run.integrity.complete) == (4, False)
+    path.write_bytes(TEXT.encode()[:70] + bytes(3) + TEXT.encode()[70:])
+    with pytest.raises(MeasurementError, match="not text"):
+        luztar.read(path)
 
 
 def test_a_last_line_without_its_end_is_a_finding_and_not_doubtful(tmp_path):

@@ -87,3 +87,10 @@ def test_a_load_cell_nobody_named_is_not_guessed(tmp_path):
         run["torque"]
     assert "'ADC6'" in caught.value.kind
     assert "--map torque" in caught.value.remedy
+
+
+def test_a_blank_line_among_the_declared_rows_is_not_counted_as_one(tmp_path):
+    text = abd_text().replace("0.0200\t", "\r\n0.0200\t")
+    run = luztar.read(write(tmp_path, text), map=LOAD_CELL)[0]
+    assert (len(run), run.integrity.complete) == (4, False)
+    assert "1 of those lines hold none" in run.integrity.doubtful[0].text
