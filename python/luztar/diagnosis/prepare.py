@@ -17,9 +17,6 @@ from ..model import Model
 if TYPE_CHECKING:
     from ..measurement import Run
 
-# The friction state of a run is unknown until its first motion has run through the widest gap or break-away that the
-# catalogue looks for; 3 % of the range is 3.6 degrees on a rig turned by +-60 degrees.
-UNKNOWN_TRAVEL_SHARE = 0.03
 # The low pass mixes the time before into the time after an instant: its impulse response, 8 poles in all, has decayed
 # to 1 % after 1.5 periods of the upper edge.
 FILTER_MEMORY_PERIODS = 1.5
@@ -153,7 +150,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         acceleration=acceleration,
         effort=recording.measured(effort),
         usable=_usable(
-            position, strokes[0], memory, UNKNOWN_TRAVEL_SHARE * recording.range, every, len(recording)
+            position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
         ),
         zone=_zone(speed, structure.rest_speed, ZONE_WIDTH_PERIODS / band / step_s),
         strokes=strokes,
