@@ -1,7 +1,7 @@
 """What `import luztar` costs on top of NumPy: `python benches/bench_import.py`.
 
-Each figure is the median over fresh interpreters, timed inside each one so that its own start does not count. The aim is
-40 ms beyond NumPy; a test holds what may be loaded (tests/test_house.py), no test holds a time.
+Each figure is the median over fresh interpreters, timed inside each one so that its own start does not count. The aim
+is 40 ms beyond NumPy; a test holds what may be loaded (tests/test_house.py), no test holds a time.
 """
 
 from __future__ import annotations
@@ -11,7 +11,13 @@ import subprocess
 import sys
 
 RUNS = 15
-STATEMENTS = ("import luztar", "import luztar.measurement", "import luztar.model", "import luztar.tb038", "import luztar.diagnosis")
+STATEMENTS = (
+    "import luztar",
+    "import luztar.measurement",
+    "import luztar.model",
+    "import luztar.tb038",
+    "import luztar.diagnosis",
+)
 
 
 def milliseconds(statement: str) -> float:

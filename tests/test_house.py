@@ -162,7 +162,18 @@ def test_the_core_knows_no_python() -> None:
     if shutil.which("cargo") is None:
         pytest.skip("cargo is not at hand: only the manifest was read")
     tree = subprocess.run(
-        ["cargo", "tree", "--locked", "--offline", "--package", "luztar", "--edges", "normal,build", "--prefix", "none"],
+        [
+            "cargo",
+            "tree",
+            "--locked",
+            "--offline",
+            "--package",
+            "luztar",
+            "--edges",
+            "normal,build",
+            "--prefix",
+            "none",
+        ],
         cwd=TOP,
         capture_output=True,
         text=True,
@@ -190,7 +201,9 @@ def test_no_file_is_called_after_nothing() -> None:
 
 
 def test_no_python_file_does_two_jobs() -> None:
-    long = {p.name: n for p in tracked() if p.suffix == ".py" and (n := len(p.read_text("utf-8").splitlines())) > MOST_LINES}
+    long = {
+        p.name: n for p in tracked() if p.suffix == ".py" and (n := len(p.read_text("utf-8").splitlines())) > MOST_LINES
+    }
     assert long == {}
 
 
