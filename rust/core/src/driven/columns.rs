@@ -122,7 +122,9 @@ impl Recording {
                 let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
                 let engaged = engaged.get_or_insert_with(|| engagement(&contact, state));
                 if let Some(engaged) = engaged {
-                    raw.iter_mut().for_each(|column| multiply(column, engaged));
+                    for column in &mut raw {
+                        multiply(column, engaged);
+                    }
                 }
             }
             for column in raw {
@@ -189,7 +191,7 @@ impl Recording {
             return column.iter().step_by(self.decimate()).copied().collect();
         }
         let last = column.len() - 1;
-        let at = |i: isize| column[i.clamp(0, last as isize) as usize];
+        let at = |i: isize| column[i.clamp(0, last.cast_signed()) as usize];
         (0..column.len())
             .step_by(self.decimate())
             .map(|k| {
