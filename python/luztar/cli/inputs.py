@@ -1,0 +1,169 @@
+"""From the words of a command to runs and a model."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import LuztarError, MeasurementError, ModelError, ParameterError
+from . import exits
+from .output import tell
+
+if TYPE_CHECKING:
+    from ..measurement import Run, Runs
+    from ..model import Model
+
+# A value in quotes of its own, as in a script that escaped them: "SR Angle" or "ADC6"*0.52.
+_QUOTED = re.compile(r"""(["'])(?P<name>.*)\1(?P<rest>\s*\*[^"']*)?\Z""")
+# Findings that keep the samples they concern from being used at all.
+UNREADABLE = ("cut", "gap", "duplicate_time", "reversed_time", "not_finite")
+
+
+class UnreadablePart(MeasurementError):
+    """A part of a run cannot be read, so that nothing can be concluded from it."""
+
+    exit_code = exits.INCONCLUSIVE
+
+
+@dataclass(frozen=True)
+class Given:
+    """The runs of a command: those that are fitted, and those that are only predicted."""
+
+    fitted: Runs
+    held_out: Runs
+
+    @property
+    def every(self) -> tuple[Run, ...]:
+        """All runs."""
+        return (*self.fitted, *self.held_out)
+
+
+def pairs(option: str, texts: Sequence[str]) -> dict[str, str]:
+    """Take ``KEY=VALUE`` words apart.
+
+    Raises
+    ------
+    ParameterError
+        Where a word has no ``=`` or a key is given twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        key, value = key.strip(), value.strip()
+        if not equals or not key:
+            raise ParameterError(f"{text!r} is not of the form KEY=VALUE", option, f'Write {option} angle="VALUE".')
+        if key in found:
+            raise ParameterError(f"{key} is given twice", option, "Leave one of them out.")
+        quoted = _QUOTED.match(value)
+        found[key] = f"{quoted['name']}{quoted['rest'] or ''}" if quoted else value
+    return found
+
+
+def read_runs(
+    paths: Sequence[str],
+    held_out: Sequence[str] = (),
+    *,
+    mapped: Sequence[str] = (),
+    units: Sequence[str] = (),
+    resample_hz: float | None = None,
+    drop_copies: bool = True,
+) -> Given:
+    """Read the runs of a command.
+
+    A run that is also held out is only predicted, and a file given twice counts once: a copy among the fitted runs
+    would let the others predict it, and one among the held-out runs would not be unseen.
+
+    Raises
+    ------
+    MeasurementError, ParameterError
+        A file that cannot be read, an option that cannot be understood, or no run left to fit.
+    """
+    from ..measurement import Runs, read
+
+    files = [*paths, *held_out]
+    unseen = len(held_out)
+    runs = read(files, map=pairs("--map", mapped), units=pairs("--unit", units), resample_hz=resample_hz)
+    if not drop_copies:
+        return Given(runs, Runs())
+    # From the back, so that a held-out run stays and its copy among the fitted ones goes.
+    kept: list[int] = []
+    for i in reversed(range(len(files))):
+        copy = next((k for k in kept if _same(files[i], runs[i], files[k], runs[k])), None)
+        first = i >= len(paths) or copy is None or copy < len(paths)
+        if copy is None:
+            kept.append(i)
+        elif first:
+            # Of two copies on the same side the earlier one stays.
+            kept[kept.index(copy)] = i
+            tell(f"{files[copy]}: the same run as {files[i]}; it counts once")
+        else:
+            tell(f"{files[i]}: held out, so it is only predicted")
+    fitted = [_without_copy_note(runs[i]) for i in sorted(kept) if i < len(paths)]
+    predicted = [_without_copy_note(runs[i]) for i in sorted(kept) if i >= len(paths)]
+    if not fitted:
+        where = "--held-out" if unseen else "RUN"
+        raise ParameterError("every run is held out, none is left to fit", where, "Give at least one RUN more.")
+    return Given(Runs(fitted), Runs(predicted))
+
+
+def _same(a: str, run_a: Run, b: str, run_b: Run) -> bool:
+    return os.path.realpath(a) == os.path.realpath(b) or (run_a.sha256 is not None and run_a.sha256 == run_b.sha256)
+
+
+def _without_copy_note(run: Run) -> Run:
+    """Drop the reader's note about a copy: the copies are gone."""
+    from dataclasses import replace
+
+    from ..measurement import Run
+
+    findings = tuple(f for f in run.integrity.findings if not f.text.startswith("the same bytes as "))
+    if len(findings) == len(run.integrity.findings):
+        return run
+    integrity = replace(run.integrity, findings=findings)
+    return Run.from_parts(run.name, run.time_s, dict(run.channels), integrity, run.source, run.sha256)
+
+
+def find_model(text: str, band_hz: float | None = None) -> Model:
+    """Return a built-in structure's model, or the one of a TOML file.
+
+    Raises
+    ------
+    ModelError
+        Where there is neither; the nearest names are in the remedy.
+    """
+    from ..model import STRUCTURES, Model
+
+    if text in STRUCTURES:
+        model = Model(text, STRUCTURES[text].effects)
+    elif Path(text).is_file():
+        model = Model.load(text)
+    else:
+        near = difflib.get_close_matches(text.lower(), STRUCTURES, n=1)
+        guess = f"Did you mean {near[0]}? " if near else ""
+        known = ", ".join(STRUCTURES)
+        raise ModelError(
+            f"there is no model '{text}'", "--model", f"{guess}Built in: {known}; or give the path of a TOML file."
+        )
+    try:
+        return model.with_band(band_hz)
+    except ModelError as error:
+        raise ModelError(error.kind, "--band", error.remedy) from None
+
+
+def unreadable(error: LuztarError, runs: Sequence[Run], model: Model) -> LuztarError:
+    """Return the error as :class:`UnreadablePart` where a part of a run is the reason, else as it is."""
+    if not isinstance(error, MeasurementError | ParameterError):
+        return error
+    channels = (None, "time", model.structure.motion, model.structure.effort)
+    for run in runs:
+        for finding in run.integrity.findings:
+            if finding.kind in UNREADABLE and finding.channel in channels:
+                return UnreadablePart(error.kind, error.where or run.name, error.remedy)
+        if not run.integrity.complete:
+            return UnreadablePart(error.kind, error.where or run.name, error.remedy)
+    return error
