@@ -51,7 +51,7 @@ def demo(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Show the main job on bundled runs: check, compare, diagnose, add, report."""
+    """Run the main job on bundled data, with a report."""
     from .demo import run_demo
 
     return run_demo(out, json)
@@ -73,13 +73,17 @@ def tb038(
     report: Report = None,
     debug: Debug = False,
 ) -> int:
-    """Check the friction of a steering robot by Euro NCAP TB 038. Exit code 0 pass, 1 fail, 2 inconclusive."""
+    """Check a steering robot's friction by Euro NCAP TB 038.
+
+    Exit code 0 pass, 1 fail, 2 inconclusive. One file is one test; three are needed for a pass.
+    """
     from ..tb038 import evaluate
-    from .inputs import read_runs
+    from .inputs import check_positive, read_runs
     from .output import say
     from .report import check_place, write
 
     check_place(report)
+    check_positive("--link-distance-m", link_distance_m, "metres")
     # The check counts copies itself and says so.
     given = read_runs(runs, mapped=map, units=unit, resample_hz=resample, drop_copies=False)
     check = evaluate(given.fitted, link_distance_m=link_distance_m, centre=centre)
@@ -101,7 +105,10 @@ def compare(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Show the error of a model against the noise floor, and where it is."""
+    """Show how large a model's error is, and where.
+
+    The error is set against the noise floor: what no model could remove.
+    """
     from ..diagnosis import compare as compare_fit
     from ..diagnosis import fit as fit_model
     from .output import show
@@ -123,7 +130,10 @@ def diagnose(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Look once: what is missing from the model. Exit code 2 with too few strokes or an unreadable part."""
+    """Look once at what is missing from a model.
+
+    Exit code 2 with too few strokes or an unreadable part.
+    """
     from ..diagnosis import diagnose as diagnose_fit
     from ..diagnosis import fit as fit_model
     from ..errors import LuztarError
@@ -159,13 +169,16 @@ def study(
     report: Report = None,
     debug: Debug = False,
 ) -> int:
-    """Compare, diagnose, add and refit until nothing is missing. Exit code 2 with too few strokes or a cut file."""
+    """Diagnose, add, refit, until nothing is missing.
+
+    Exit code 2 with too few strokes or an unreadable part.
+    """
     from ..diagnosis import study as study_runs
     from ..errors import LuztarError
     from .inputs import unreadable
     from .output import show
     from .progress import bar
-    from .report import check_place, check_of, write
+    from .report import check_of, check_place, write
 
     check_place(report)
     start_from, given = _inputs(model, band, runs, held_out, map, unit, resample)
@@ -194,7 +207,7 @@ def fit(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Estimate the parameters of a model, with effects added to it where wanted."""
+    """Estimate a model's parameters, with 95 % intervals."""
     from ..diagnosis import fit as fit_model
     from .output import show
 
@@ -209,7 +222,7 @@ def explain(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Show the card of one effect, or the list of all."""
+    """Show the card of one effect, or the list."""
     from .explain import card_text, list_text, listed
     from .output import say
 
@@ -236,9 +249,7 @@ def _inputs(
     """Return the model and the runs; the model first, as its mistakes show without reading a file."""
     from .inputs import find_model, read_runs
 
-    start_from = find_model(model, band)
-    for name in add or ():
-        start_from = start_from + name
+    start_from = find_model(model, band, add or ())
     return start_from, read_runs(runs, held_out, mapped=mapped, units=units, resample_hz=resample)
 
 

@@ -105,5 +105,3 @@ def _internal(error: Exception) -> dict[str, str]:
     if "--debug" not in sys.argv:
         remedy += " --debug shows where it happened."
     return {"kind": kind, "where": place, "remedy": remedy}
-
-

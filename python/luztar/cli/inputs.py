@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import os
 import re
 from collections.abc import Sequence
@@ -85,51 +86,42 @@ def read_runs(
     """
     from ..measurement import Runs, read
 
-    files = [*paths, *held_out]
-    unseen = len(held_out)
+    if resample_hz is not None:
+        check_positive("--resample", resample_hz, "Hz")
+    # The held-out ones first: of two copies the first is kept.
+    files = [*held_out, *paths]
     runs = read(files, map=pairs("--map", mapped), units=pairs("--unit", units), resample_hz=resample_hz)
     if not drop_copies:
         return Given(runs, Runs())
-    # From the back, so that a held-out run stays and its copy among the fitted ones goes.
     kept: list[int] = []
-    for i in reversed(range(len(files))):
-        copy = next((k for k in kept if _same(files[i], runs[i], files[k], runs[k])), None)
-        first = i >= len(paths) or copy is None or copy < len(paths)
+    for i, run in enumerate(runs):
+        copy = next((k for k in kept if _same(files[k], runs[k], files[i], run)), None)
         if copy is None:
             kept.append(i)
-        elif first:
-            # Of two copies on the same side the earlier one stays.
-            kept[kept.index(copy)] = i
-            tell(f"{files[copy]}: the same run as {files[i]}; it counts once")
-        else:
+        elif copy < len(held_out) <= i:
             tell(f"{files[i]}: held out, so it is only predicted")
-    fitted = [_without_copy_note(runs[i]) for i in sorted(kept) if i < len(paths)]
-    predicted = [_without_copy_note(runs[i]) for i in sorted(kept) if i >= len(paths)]
+        else:
+            tell(f"{files[i]}: the same run as {files[copy]}; it counts once")
+    fitted = [runs[i] for i in kept if i >= len(held_out)]
     if not fitted:
-        where = "--held-out" if unseen else "RUN"
-        raise ParameterError("every run is held out, none is left to fit", where, "Give at least one RUN more.")
-    return Given(Runs(fitted), Runs(predicted))
+        raise ParameterError(
+            "every run is held out, none is left to fit", "--held-out", "Give a RUN that is not held out."
+        )
+    return Given(Runs(fitted), Runs([runs[i] for i in kept if i < len(held_out)]))
 
 
 def _same(a: str, run_a: Run, b: str, run_b: Run) -> bool:
     return os.path.realpath(a) == os.path.realpath(b) or (run_a.sha256 is not None and run_a.sha256 == run_b.sha256)
 
 
-def _without_copy_note(run: Run) -> Run:
-    """Drop the reader's note about a copy: the copies are gone."""
-    from dataclasses import replace
-
-    from ..measurement import Run
-
-    findings = tuple(f for f in run.integrity.findings if not f.text.startswith("the same bytes as "))
-    if len(findings) == len(run.integrity.findings):
-        return run
-    integrity = replace(run.integrity, findings=findings)
-    return Run.from_parts(run.name, run.time_s, dict(run.channels), integrity, run.source, run.sha256)
+def check_positive(option: str, value: float, unit: str) -> None:
+    """Refuse a number that is not finite and above 0, by the option's own name."""
+    if not (math.isfinite(value) and value > 0.0):
+        raise ParameterError(f"{value:g} is not a positive number", option, f"Give a positive number of {unit}.")
 
 
-def find_model(text: str, band_hz: float | None = None) -> Model:
-    """Return a built-in structure's model, or the one of a TOML file.
+def find_model(text: str, band_hz: float | None = None, add: Sequence[str] = ()) -> Model:
+    """Return a built-in structure's model, or the one of a TOML file, with effects added.
 
     Raises
     ------
@@ -149,10 +141,15 @@ def find_model(text: str, band_hz: float | None = None) -> Model:
         raise ModelError(
             f"there is no model '{text}'", "--model", f"{guess}Built in: {known}; or give the path of a TOML file."
         )
+    if band_hz is not None:
+        check_positive("--band", band_hz, "Hz")
+        model = model.with_band(band_hz)
     try:
-        return model.with_band(band_hz)
+        for name in add:
+            model = model + name
     except ModelError as error:
-        raise ModelError(error.kind, "--band", error.remedy) from None
+        raise ModelError(error.kind, "--add", error.remedy) from None
+    return model
 
 
 def unreadable(error: LuztarError, runs: Sequence[Run], model: Model) -> LuztarError:
