@@ -30,14 +30,17 @@ class Experiment:
 
 
 def next_experiment(fitted: Fit, judged: Judgement) -> Experiment | None:
-    """Return the test that would tell the effects of a set apart; None where there is nothing to tell."""
+    """Return the test to do after a look; None where there is nothing to tell apart."""
     if judged.verdict == "too_few_strokes":
         return Experiment("Record three runs of at least six strokes each, from beyond one end to beyond the other.", ())
-    if judged.verdict not in ("one_of", "named"):
-        return None
+    return experiment_for(fitted, judged.named) if judged.named else None
+
+
+def experiment_for(fitted: Fit, named: tuple[str, ...]) -> Experiment | None:
+    """Return the test that would tell the effects of a set apart, or confirm one that looks like another."""
     rig = fitted.model.structure_name == "rig"
     reach = max(r.recording.range for r in fitted.runs)
-    rivals = tuple(judged.named)
+    rivals = tuple(named)
     turns = {"stiffness", "once_per_rev"}
     if rig and turns & set(rivals) and reach < 1.5 * math.pi:
         pair = tuple(dict.fromkeys((*rivals, *sorted(turns))))

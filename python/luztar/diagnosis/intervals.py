@@ -65,7 +65,8 @@ class Estimate:
 
 def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
     """Return every parameter of a fitted state, keyed ``effect.parameter``."""
-    varied = continuous(problem, fitted)
+    # A sharp break-away has no interval of its own, but what is not known of it widens those of a delay or a gap.
+    varied = continuous(problem, fitted, sharpness=True)
     made = jacobian(problem, fitted, varied)
     parts = blocks(problem.runs, made, problem.weights)
     full = solve(parts.gram.sum(axis=0))
@@ -95,7 +96,7 @@ def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
                 out[key] = _given(model.known[key], p.unit)
                 continue
             at = next((k for k, v in enumerate(varied) if (v.effect, v.index) == (name, i)), None)
-            if at is None:
+            if at is None or (p.grid and p.grid[0] == "resolution"):
                 out[key] = Estimate(value, None, None, False, p.unit, _why_discrete(p.grid))
                 continue
             place = len(free) + at

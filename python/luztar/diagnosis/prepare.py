@@ -17,12 +17,11 @@ from ..model import Model
 if TYPE_CHECKING:
     from ..measurement import Run
 
-# The friction state of a run is unknown until its first motion has run through the widest gap or break-away that the
-# catalogue looks for; 3 % of the range is 3.6 degrees on a rig turned by +-60 degrees.
-UNKNOWN_TRAVEL_SHARE = 0.03
 # The low pass mixes the time before into the time after an instant: its impulse response, 8 poles in all, has decayed
 # to 1 % after 1.5 periods of the upper edge.
 FILTER_MEMORY_PERIODS = 1.5
+# Speed and acceleration take two samples on either side each; nearer to the end they are one-sided.
+DERIVATIVE_REACH = 4
 # The reversal zone reaches this far beyond the stretch of low speed (interface: 0.15 s at the 6 Hz of a rig).
 ZONE_WIDTH_PERIODS = 0.9
 # A structure without a speed of rest of its own takes this share of its top speed.
@@ -68,7 +67,7 @@ class Prepared:
     time_s, motion, speed, acceleration, effort : ndarray, shape (n,)
         Time since the start of the file; smoothed motion and its derivatives; the measured torque or force, filtered.
     usable : ndarray of bool, shape (n,)
-        False before the first motion has fixed the friction state.
+        False before the first motion has fixed the friction state, and where the acceleration is one-sided.
     zone : ndarray of bool, shape (n,)
         True at rest and around reversals.
     strokes : tuple of Stroke
@@ -113,7 +112,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
     motion = vector(f"{run.name}: {structure.motion}", run[structure.motion], minimum=16)
     effort = vector(f"{run.name}: {structure.effort}", run[structure.effort], minimum=16)
     rate = run.sample_rate_hz
-    band = model.band_hz
+    band = comparison_band_hz(model, rate)
     if not band < 0.45 * rate:
         raise MeasurementError(
             f"sampled at {rate:g} Hz, too slowly for a band of {band:g} Hz", run.name, "Compare with a smaller --band."
@@ -128,6 +127,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         sample_rate_hz=rate,
         band_hz=band,
         decimate=model.comparison.decimate,
+        anti_alias=decimates_alone(model),
         already_filtered=model.comparison.filter_already_applied,
         hysteresis=structure.hysteresis(span),
         minimum_travel=structure.minimum_travel(span),
@@ -149,12 +149,26 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         speed=speed,
         acceleration=acceleration,
         effort=recording.measured(effort),
-        usable=_usable(position, strokes[0], memory, UNKNOWN_TRAVEL_SHARE * recording.range),
+        usable=_usable(
+            position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
+        ),
         zone=_zone(speed, structure.rest_speed, ZONE_WIDTH_PERIODS / band / step_s),
         strokes=strokes,
         step_s=step_s,
         duration_s=run.duration_s,
     )
+
+
+def decimates_alone(model: Model) -> bool:
+    """Whether the model asks for a decimation without a band: its anti-alias filter is then the comparison's."""
+    return (model.comparison.decimate or 1) > 1 and model.comparison.band_hz is None
+
+
+def comparison_band_hz(model: Model, rate_hz: float) -> float:
+    """Return the upper edge of the comparison at a sample rate."""
+    every = model.comparison.decimate or 1
+    # Four fifths of the new Nyquist frequency, the edge of the decimation's filter.
+    return 0.8 * rate_hz / (2 * every) if decimates_alone(model) else model.band_hz
 
 
 def _least_travel(model: Model, span: float) -> str:
@@ -176,12 +190,15 @@ def _strokes(
     )
 
 
-def _usable(position: np.ndarray, first: Stroke, memory: int, unknown_travel: float) -> np.ndarray:
+def _usable(
+    position: np.ndarray, first: Stroke, memory: int, unknown_travel: float, every: int, samples: int
+) -> np.ndarray:
     start = position[first.onset]
     travelled = np.abs(position - start) > unknown_travel
     travelled[: first.onset] = False
     known = int(np.argmax(travelled)) if travelled.any() else position.size
-    return np.arange(position.size) >= max(known, first.onset) + memory
+    place = np.arange(position.size)
+    return (place >= max(known, first.onset) + memory) & (place * every < samples - DERIVATIVE_REACH)
 
 
 def _zone(speed: np.ndarray, rest_speed: float | None, width: float) -> np.ndarray:

@@ -149,7 +149,7 @@ def refine(
     """
     best = start
     for _ in range(rounds):
-        before = best.loss
+        before, since = best.loss, best.terms
         for name in best.terms.effects:
             if only is not None and name != only:
                 continue
@@ -157,9 +157,59 @@ def refine(
                 if f"{name}.{p.key}" in problem.model.known:
                     continue
                 best = _refine_one(problem, best, name, i, visit)
+        best = _along(problem, best, since, visit)
         if best.loss > before * (1.0 - WORTH):
             break
     return best
+
+
+def _along(problem: Problem, best: State, since: Terms, visit: Callable[[State], None] | None) -> State:
+    """Go on in the direction in which a round has moved all inner parameters together.
+
+    Two parameters that do nearly the same (a break-away and a delay) lie along a valley; one at a time crosses it in
+    steps that grow ever smaller.
+    """
+    moved = [n for n, values in best.terms.inner.items() if since.inner.get(n) not in (None, values)]
+    if len(moved) < 2:
+        return best
+    tried = [best]
+
+    def at(share: float) -> float:
+        inner = dict(best.terms.inner)
+        for n in moved:
+            bounds = [limits(problem, n, i) for i in range(len(inner[n]))]
+            inner[n] = tuple(
+                float(np.clip(a + share * (b - a), *limit))
+                for a, b, limit in zip(since.inner[n], inner[n], bounds, strict=True)
+            )
+        tried.append(state(problem, Terms(best.terms.effects, inner)))
+        if visit is not None:
+            visit(tried[-1])
+        return tried[-1].loss
+
+    share, step = 1.0, 1.0
+    while step < 20.0 and at(share + step) < min(s.loss for s in tried[:-1]):
+        share, step = share + step, 2.0 * step
+    return min(tried, key=lambda s: s.loss)
+
+
+def limits(problem: Problem, name: str, i: int) -> tuple[float, float]:
+    """Return the range in which an inner parameter is looked for."""
+    p = card(name, problem.model.structure_name).inner[i]
+    word = p.grid[0] if p.grid else ""
+    if f"{name}.{p.key}" in problem.model.known or word in _DISCRETE:
+        return -np.inf, np.inf
+    if word == "travel":
+        return least_travel(problem.runs), p.high
+    if word == "resolution":
+        # What the sensor shows of a sharp break-away; a blunter one is presliding and has to be named as such.
+        points = grid(p, problem.runs)
+        return float(points[0]), float(points[-1])
+    if word in _GEOMETRIC:
+        # Beyond four times the grid the law is a simpler one (a constant, or nothing).
+        points = grid(p, problem.runs)
+        return float(points[0]) / 4.0, min(p.high, 4.0 * float(points[-1]))
+    return p.low, p.high
 
 
 def _refine_one(
@@ -168,12 +218,7 @@ def _refine_one(
     p = card(name, problem.model.structure_name).inner[i]
     word = p.grid[0] if p.grid else ""
     points = grid(p, problem.runs)
-    low, high = p.low, p.high
-    if word == "travel":
-        low = least_travel(problem.runs)
-    elif word == "resolution":
-        # What the sensor shows of a sharp break-away; a blunter one is presliding and has to be named as such.
-        low, high = float(points[0]), float(points[-1])
+    low, high = limits(problem, name, i)
     tried: dict[float, State] = {best.terms.inner[name][i]: best}
 
     def at(value: float) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..model import Model
+from ..model import Model, card
+from .candidates import PRACTICAL_GAIN, SET_ERRORS, gain
 from .diagnose import Diagnosis, diagnose
-from .experiment import Experiment
+from .experiment import Experiment, experiment_for
 from .fit import Fit, fit_prepared
 from .floor import NoiseFloor, noise_floor
 from .prepare import Prepared, prepare
@@ -163,38 +164,111 @@ def study(
     prepared = prepare(runs, model)
     unseen = prepare(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
-    steps, looks = climb(model, prepared, unseen, floor, max_effects, progress)
+    steps, looks = climb(_Loop(model, prepared, unseen, floor, progress), max_effects)
     return Study(tuple(steps), tuple(looks), floor, runs, held_out)
 
 
-def climb(
-    model: Model,
-    prepared: tuple[Prepared, ...],
-    unseen: tuple[Prepared, ...],
-    floor: NoiseFloor,
-    max_effects: int,
-    progress: Callable[[str, int, int], None] | None,
-) -> tuple[list[Step], list[Diagnosis]]:
-    """Run the loop on prepared runs."""
+@dataclass(frozen=True)
+class _Loop:
+    """What stays the same during a study."""
 
-    def tell(what: str) -> Callable[[int, int], None] | None:
-        return None if progress is None else lambda done, total: progress(what, done, total)
+    base: Model
+    prepared: tuple[Prepared, ...]
+    unseen: tuple[Prepared, ...]
+    floor: NoiseFloor
+    progress: Callable[[str, int, int], None] | None
 
-    fitted = fit_prepared(model, prepared, unseen, floor)
-    steps = [Step(None, (), False, fitted, None)]
-    looks: list[Diagnosis] = []
-    while True:
-        look = diagnose(fitted, progress=tell(f"look {len(looks) + 1}"))
-        looks.append(look)
-        if not look.named or len(steps) > max_effects:
+    def fit(self, model: Model) -> Fit:
+        return fit_prepared(model, self.prepared, self.unseen, self.floor)
+
+    def look(self, fitted: Fit, what: str) -> Diagnosis:
+        progress = self.progress
+        return diagnose(fitted, progress=None if progress is None else lambda done, of: progress(what, done, of))
+
+
+def climb(loop: _Loop, max_effects: int) -> tuple[list[Step], list[Diagnosis]]:
+    """Add effects until nothing is missing, drop what later ones made needless, and order the ladder."""
+    fitted = loop.fit(loop.base)
+    looks = [loop.look(fitted, "look 1")]
+    added: list[str] = []
+    offered: dict[str, tuple[str, ...]] = {}
+    seen = {frozenset(added)}
+    while looks[-1].named and len(added) < max_effects:
+        name = looks[-1].named[0]
+        offered[name] = looks[-1].named
+        added.append(name)
+        fitted = loop.fit(_with(fitted, looks[-1], name))
+        fitted, added = _without_needless(loop, fitted, added)
+        if frozenset(added) in seen:
             break
-        added = look.named[0]
-        fitted = fit_prepared(_with(fitted, look, added), prepared, unseen, floor)
-        members = look.named if look.verdict == "one_of" else (added,)
-        steps.append(Step(added, members, False, fitted, look.next_experiment))
-    if looks[-1].verdict == "unexplained" or (looks[-1].named and len(steps) > max_effects):
-        steps = [Step(s.added, s.set, s.added is not None, s.fit, s.next_experiment) for s in steps]
-    return steps, looks
+        seen.add(frozenset(added))
+        looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
+    unexplained = looks[-1].verdict == "unexplained" or bool(looks[-1].named)
+    if len(added) > 1 and not unexplained:
+        fitted, added, offered = _each_in_its_place(loop, fitted, added, looks)
+    return _ladder(loop, fitted, added, offered, unexplained), looks
+
+
+def _without_needless(loop: _Loop, fitted: Fit, added: list[str]) -> tuple[Fit, list[str]]:
+    """Drop every effect without which the unseen error is no worse.
+
+    An effect may have stood in for others that were added later; what is left must each earn its place.
+    """
+    while len(added) > 1:
+        trials = [(name, loop.fit(fitted.model - name)) for name in added]
+        for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
+            share, errors = gain(without.search, fitted.search)
+            if share < PRACTICAL_GAIN or errors < SET_ERRORS:
+                fitted, added = without, [a for a in added if a != name]
+                break
+        else:
+            return fitted, added
+    return fitted, added
+
+
+def _each_in_its_place(
+    loop: _Loop, fitted: Fit, added: list[str], looks: list[Diagnosis]
+) -> tuple[Fit, list[str], dict[str, tuple[str, ...]]]:
+    """Look again for every effect with the others in place: a better one replaces it, equal ones join its set."""
+    offered: dict[str, tuple[str, ...]] = {}
+    for name in list(added):
+        without = loop.fit(fitted.model - name)
+        look = loop.look(without, f"in the place of {name}")
+        if look.named and look.named[0] != name and name not in look.named:
+            better = loop.fit(_with(without, look, look.named[0]))
+            if better.search.held_out_loss < fitted.search.held_out_loss:
+                fitted, added = better, [look.named[0] if a == name else a for a in added]
+                looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
+                offered[look.named[0]] = look.named
+                continue
+        offered[name] = look.named if name in look.named else (name,)
+    return fitted, added, offered
+
+
+def _ladder(
+    loop: _Loop, fitted: Fit, added: list[str], offered: dict[str, tuple[str, ...]], provisional: bool
+) -> list[Step]:
+    """Return the steps: at each the effect that takes most off the unseen error, whatever the order of finding."""
+    start = dict(fitted.model.start)
+    steps = [Step(None, (), False, loop.fit(loop.base), None)]
+    left = list(added)
+    while left:
+        model = steps[-1].fit.model
+        trials = {name: loop.fit(_started(model + name, start, fitted)) for name in left} if len(left) > 1 else {}
+        name = min(trials, key=lambda n: trials[n].search.held_out_loss) if trials else left[0]
+        step_fit = trials.get(name) or fitted
+        members = offered.get(name, (name,))
+        # What stands in the model already is no alternative.
+        others = tuple(n for n in members if n != name and n not in step_fit.model.effects)
+        members = (name, *others)
+        steps.append(Step(name, members, provisional, step_fit, experiment_for(step_fit, members)))
+        left.remove(name)
+    return steps
+
+
+def _started(model: Model, start: dict[str, float], fitted: Fit) -> Model:
+    values = {**_inner_values(fitted.model, fitted.state.terms.inner), **start}
+    return replace(model, start={k: v for k, v in values.items() if k.partition(".")[0] in model.effects})
 
 
 def _with(fitted: Fit, look: Diagnosis, added: str) -> Model:
@@ -202,13 +276,12 @@ def _with(fitted: Fit, look: Diagnosis, added: str) -> Model:
     best = next(c for c in look.found if c.name == added).search.best
     assert best is not None
     model = fitted.model + added
-    from dataclasses import replace
+    return replace(model, start=_inner_values(model, best.terms.inner))
 
-    from ..model import card
 
-    start = {
+def _inner_values(model: Model, inner: Mapping[str, tuple[float, ...]]) -> dict[str, float]:
+    return {
         f"{name}.{p.key}": value
-        for name, values in best.terms.inner.items()
+        for name, values in inner.items()
         for p, value in zip(card(name, model.structure_name).inner, values, strict=True)
     }
-    return replace(model, start=start)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 
 from ..errors import MeasurementError
-from .columns import parse_header
 from .csv import loader
-from .rows import Block
+from .headers import parse_header
+from .lines import Block
 from .table import Table
 
 _POINTS = re.compile(rb"\s*Points\s*=\s*([^\t\r\n]*?)\s*\Z", re.IGNORECASE)
@@ -20,27 +20,30 @@ _POINTS = re.compile(rb"\s*Points\s*=\s*([^\t\r\n]*?)\s*\Z", re.IGNORECASE)
 _MOST_ROWS = 10**10
 
 
-def is_export(raw: bytes) -> bool:
+def is_export(data: bytes) -> bool:
     """Whether the second line declares ``Points=``."""
-    lines = raw[:65536].splitlines()
+    lines = data[:65536].split(b"\n", 2)
     return len(lines) > 1 and _POINTS.match(lines[1]) is not None
 
 
-def table_from_export(raw: bytes, where: str, *, sha256: str | None, broken_off: bool) -> Table:
+def table_from_export(data: bytes, where: str, *, sha256: str | None, broken_off: bool) -> Table:
     """Read the head of an export.
+
+    Parameters
+    ----------
+    data : bytes
+        UTF-8 text with LF line ends.
+    where : str
+        The file, for messages.
+    sha256 : str or None
+    broken_off : bool
+        Whether the bytes are known to end too early.
 
     Raises
     ------
     MeasurementError
         Where ``Points`` is no count, or the names and units are missing.
     """
-    if raw.startswith(b"\xef\xbb\xbf"):
-        raw = raw[3:]
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("cp1252", "replace")
-    data = text.encode().replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     lines = data.split(b"\n", 4)
     found = _POINTS.match(lines[1])
     assert found is not None

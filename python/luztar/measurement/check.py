@@ -90,13 +90,15 @@ def inspect(
         Where fewer than two stamps are finite.
     """
     where = place or (lambda row: f"row {row}")
-    time_s, findings = _fill_time(time_s, where)
-    step_findings, steps = _time_axis(time_s, where)
-    findings += step_findings
-    for key, values in channels.items():
-        findings += _not_finite(key, values, time_s, where)
-    for key in channels:
-        findings += _still(key, channels, time_s, where)
+    # Differences of infinities and of numbers near the largest float are no fault of the check.
+    with np.errstate(over="ignore", invalid="ignore"):
+        time_s, findings = _fill_time(time_s, where)
+        step_findings, steps = _time_axis(time_s, where)
+        findings += step_findings
+        for key, values in channels.items():
+            findings += _not_finite(key, values, time_s, where)
+        for key in channels:
+            findings += _still(key, channels, time_s, where)
     return time_s, findings, steps
 
 
@@ -176,9 +178,9 @@ def _time_axis(time_s: np.ndarray, where: Place) -> tuple[list[Finding], Steps]:
     found = []
     for i in gaps:
         a, b = float(time_s[i]), float(time_s[i + 1])
-        lost = max(round((b - a) / median) - 1, 1)
+        lost = max(float(np.rint((b - a) / median)) - 1.0, 1.0)
         span = f"{a:.6g} s to {b:.6g} s"
-        text = f"gap of {b - a:.4g} s before {where(int(i) + 1)} ({span}): about {lost} samples are missing"
+        text = f"gap of {b - a:.4g} s before {where(int(i) + 1)} ({span}): about {lost:.6g} samples are missing"
         found.append((int(i), int(i) + 1, Finding("gap", text, True, None, a, b)))
     findings += _capped(found, "gap", time_s)
     findings += _uneven(time_s, dt, median, limit, where)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from ..errors import MeasurementError
 from . import units as _units
-from .columns import parse_header
-from .rows import Block, is_missing, is_number, read_rows, split
+from .headers import parse_header
+from .lines import Block, is_missing, is_number, split
+from .rows import read_rows
 from .table import Loaded, Table
 
 # The first row of numbers must stand within so many lines; more would be no preamble but another kind of file.

@@ -9,7 +9,8 @@ import numpy as np
 
 from .._arrays import vector
 from ..errors import MeasurementError, ParameterError
-from .columns import check_keys, parse_header
+from .columns import check_keys
+from .headers import parse_header
 from .run import Run
 from .table import Loaded, Table, to_run
 

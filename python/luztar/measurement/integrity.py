@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from html import escape
 from typing import Any
@@ -43,6 +44,11 @@ class Finding:
             "from_s": self.from_s,
             "to_s": self.to_s,
         }
+
+
+def _finite(value: float | None) -> float | None:
+    """JSON has no infinity."""
+    return value if value is not None and math.isfinite(value) else None
 
 
 @dataclass(frozen=True)
@@ -93,9 +99,9 @@ class Integrity:
             "rows_declared": self.rows_declared,
             "rows_read": self.rows_read,
             "complete": self.complete,
-            "dt_median_s": self.dt_median_s,
-            "dt_min_s": self.dt_min_s,
-            "dt_max_s": self.dt_max_s,
+            "dt_median_s": _finite(self.dt_median_s),
+            "dt_min_s": _finite(self.dt_min_s),
+            "dt_max_s": _finite(self.dt_max_s),
             "units": {k: {"read": a, "used": b} for k, (a, b) in self.units.items()},
             "columns": dict(self.columns),
             "findings": [f.to_dict() for f in self.findings],

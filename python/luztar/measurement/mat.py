@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import MeasurementError
-from .columns import Column, parse_header
+from .headers import Column, parse_header
 from .integrity import Finding
 from .table import Loaded, Table
 

@@ -138,10 +138,9 @@ def _table(path: Path) -> Table:
     from . import abd
     from .csv import table_from_text
 
-    if abd.is_export(raw):
-        return abd.table_from_export(raw, where, sha256=digest, broken_off=broken_off)
     text, cut_inside = as_utf8(raw, where)
-    return table_from_text(text, where, sha256=digest, broken_off=broken_off or cut_inside)
+    reader = abd.table_from_export if abd.is_export(text) else table_from_text
+    return reader(text, where, sha256=digest, broken_off=broken_off or cut_inside)
 
 
 def _bytes(path: Path, where: str) -> bytes:
@@ -213,8 +212,13 @@ def as_utf8(raw: bytes, where: str) -> tuple[bytes, bool]:
             raw = raw[: len(raw) - len(raw) % 2].decode("utf-16").encode()
         except UnicodeError:
             raise MeasurementError("the text is neither UTF-8, UTF-16 nor cp1252", where, "Save it as UTF-8.") from None
-    if b"\0" in raw[: 1 << 20]:
-        raise MeasurementError("this is not text", where, "Export the record as CSV, AB Dynamics text or MAT v5.")
+    if b"\0" in raw:
+        # A file system that lost power leaves zeros where the end of the file was to be written.
+        n_bytes = len(raw)
+        raw = raw.rstrip(b"\0")
+        cut = cut or len(raw) < n_bytes
+        if b"\0" in raw or not raw:
+            raise MeasurementError("this is not text", where, "Export the record as CSV, AB Dynamics text or MAT v5.")
     if not raw.isascii():
         try:
             raw.decode("utf-8")

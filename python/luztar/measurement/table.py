@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import MeasurementError
 from .check import assumed_is_plausible, inspect
-from .columns import Column, resolve
+from .columns import resolve
+from .headers import Column
 from .integrity import Finding, Integrity
 from .run import Run
 

@@ -22,6 +22,9 @@ class Structure:
         The default model.
     band_hz : float
         Upper edge of the comparison where the model file does not say.
+    unknown_travel_share : float
+        The friction state of a run is unknown until its first motion has run through the widest gap or break-away to be
+        expected, as a share of the range: 3.6 degrees of 120 for a steering wheel, a thousandth for a driven axis.
     """
 
     name: str
@@ -31,6 +34,7 @@ class Structure:
     effort_unit: str
     effects: tuple[str, ...]
     band_hz: float
+    unknown_travel_share: float
 
     def hysteresis(self, motion_range: float) -> float:
         """Return how far the motion must come back to count as a reversal, in its unit."""
@@ -47,8 +51,8 @@ class Structure:
 
 
 STRUCTURES = {
-    "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0),
-    "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0),
+    "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0, 0.03),
+    "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0, 0.001),
 }
 
 

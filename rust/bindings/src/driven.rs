@@ -23,14 +23,15 @@ pub struct Recording(Core);
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, already_filtered, hysteresis, minimum_travel, turn_rad_per_unit))]
+    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, anti_alias, already_filtered, hysteresis, minimum_travel, turn_rad_per_unit))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         position: PyReadonlyArray1<'_, f64>,
         sample_rate_hz: f64,
-        band_hz: Option<f64>,
+        band_hz: f64,
         decimate: Option<usize>,
+        anti_alias: bool,
         already_filtered: bool,
         hysteresis: f64,
         minimum_travel: f64,
@@ -40,6 +41,7 @@ impl Recording {
         let band = Band {
             upper_hz: band_hz,
             decimate,
+            anti_alias,
             already_filtered,
         };
         let travel = Travel {

@@ -118,7 +118,7 @@ impl Recording {
                 }
             }
             for column in raw {
-                all.push(self.late(&self.filtered(column)?, delay_s));
+                all.push(self.late(&self.filtered(&column)?, delay_s));
             }
         }
         Ok(all)
@@ -147,7 +147,7 @@ impl Recording {
             let to = (stroke.onset + (after_s * self.sample_rate_hz) as usize).min(rate.len());
             near[from..to].copy_from_slice(&rate[from..to]);
         }
-        Ok(self.late(&self.filtered(near)?, delay_s))
+        Ok(self.late(&self.filtered(&near)?, delay_s))
     }
 
     /// The basis of one law along the record, one vector per column.

@@ -6,7 +6,7 @@ use super::staircase::join_steps;
 use super::strokes::{Stroke, strokes};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
-use crate::signal::{CutoffAt, Edges, LowPass, Passes, ZeroPhase};
+use crate::signal::{AntiAlias, CutoffAt, Edges, LowPass, Passes, ZeroPhase};
 
 /// Poles per pass of the low pass of a comparison and of the kinematics.
 const POLES: usize = 4;
@@ -22,10 +22,12 @@ const SAMPLES_PER_BAND_PERIOD: f64 = 8.0;
 /// The frequency range of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// Upper edge, -3 dB per pass; None compares the record as it is.
-    pub upper_hz: Option<f64>,
+    /// Upper edge: -3 dB per pass of the comparison's Butterworth low pass.
+    pub upper_hz: f64,
     /// Keep every n-th sample of the comparison; None chooses n from the band.
     pub decimate: Option<usize>,
+    /// Use the low pass of the decimation (see [`AntiAlias`]) instead of the Butterworth one.
+    pub anti_alias: bool,
     /// The torque channel has been low-passed by this band before: it is left alone, the model's columns are not.
     pub already_filtered: bool,
 }
@@ -53,7 +55,7 @@ pub struct Recording {
     pub(super) seen: Vec<f64>,
     pub(super) decimate: usize,
     pub(super) turn_rad_per_unit: f64,
-    low_pass: Option<ZeroPhase>,
+    low_pass: ZeroPhase,
     already_filtered: bool,
     resolution: Resolution,
     strokes: Vec<Stroke>,
@@ -79,14 +81,17 @@ impl Recording {
                 got: position.len(),
             });
         }
-        let low_pass = band
-            .upper_hz
-            .map(|hz| zero_phase(hz, sample_rate_hz))
-            .transpose()?;
-        // Without a band the kinematics still need one: a fortieth of the sample rate, 25 Hz at 1 kHz.
-        let kinematic_hz = band
-            .upper_hz
-            .map_or(sample_rate_hz / 40.0, |hz| KINEMATICS_OVER_BAND * hz);
+        let decimate = band.decimate.unwrap_or_else(|| {
+            (sample_rate_hz / (SAMPLES_PER_BAND_PERIOD * band.upper_hz))
+                .floor()
+                .max(1.0) as usize
+        });
+        let low_pass = if band.anti_alias {
+            ZeroPhase::anti_alias(&AntiAlias::new(decimate)?)
+        } else {
+            zero_phase(band.upper_hz, sample_rate_hz)?
+        };
+        let kinematic_hz = KINEMATICS_OVER_BAND * band.upper_hz;
         let mut smoother = (kinematic_hz < 0.45 * sample_rate_hz)
             .then(|| zero_phase(kinematic_hz, sample_rate_hz))
             .transpose()?;
@@ -114,13 +119,6 @@ impl Recording {
         );
         let speed = derivative(&smooth, sample_rate_hz);
         let acceleration = derivative(&speed, sample_rate_hz);
-        let decimate = band.decimate.unwrap_or_else(|| {
-            band.upper_hz.map_or(1, |hz| {
-                (sample_rate_hz / (SAMPLES_PER_BAND_PERIOD * hz))
-                    .floor()
-                    .max(1.0) as usize
-            })
-        });
         Ok(Self {
             sample_rate_hz,
             position: smooth,
@@ -189,17 +187,14 @@ impl Recording {
         let full = if self.already_filtered {
             channel.to_vec()
         } else {
-            self.filtered(channel.to_vec())?
+            self.filtered(channel)?
         };
         Ok(full.into_iter().step_by(self.decimate).collect())
     }
 
     /// A column through the comparison's low pass, at full rate.
-    pub(super) fn filtered(&self, column: Vec<f64>) -> Result<Vec<f64>, Error> {
-        match &self.low_pass {
-            None => Ok(column),
-            Some(filter) => run(&mut filter.clone(), &column),
-        }
+    pub(super) fn filtered(&self, column: &[f64]) -> Result<Vec<f64>, Error> {
+        run(&mut self.low_pass.clone(), column)
     }
 }
 

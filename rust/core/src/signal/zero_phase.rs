@@ -3,7 +3,9 @@
 //! The record is continued beyond both ends by point reflection, `x(-t) = 2 x(0) - x(t)`, as often as needed, so that
 //! a ramp continues as the same ramp. Each pass starts in the steady state of a ramp: the chord of the extension.
 
+use super::anti_alias::AntiAlias;
 use super::butterworth::{LowPass, Passes};
+use super::cascade::Cascade;
 use crate::error::{Error, require_moderate, require_same_length};
 
 /// What happens at the ends of the record.
@@ -32,7 +34,7 @@ pub const MAX_EXTENSION: usize = 1 << 26;
 /// A zero-phase filter with its scratch memory, for many records of any length.
 #[derive(Debug, Clone)]
 pub struct ZeroPhase {
-    low_pass: LowPass,
+    cascade: Cascade,
     edges: Edges,
     /// One extension at a time, its length fixed by the design.
     extension: Vec<f64>,
@@ -68,16 +70,24 @@ impl ZeroPhase {
             });
         }
         Ok(Self {
-            low_pass,
+            cascade: low_pass.cascade,
             edges,
             extension: vec![0.0; length],
         })
     }
 
-    /// The design.
+    /// Prepares the scratch memory for the low pass of a decimation.
     #[must_use]
-    pub fn low_pass(&self) -> &LowPass {
-        &self.low_pass
+    pub fn anti_alias(filter: &AntiAlias) -> Self {
+        let Edges::Settled { tolerance } = Edges::default() else {
+            unreachable!("the default edges are settled");
+        };
+        let length = (tolerance.ln() / filter.ln_radius).ceil() as usize;
+        Self {
+            cascade: filter.cascade,
+            edges: Edges::default(),
+            extension: vec![0.0; length.max(1)],
+        }
     }
 
     /// Filters `x` into `out`; any length from one sample. Nothing is allocated.
@@ -134,7 +144,7 @@ impl ZeroPhase {
 
     /// Filters `x - x[0]` into `out` and leaves the filtered right extension in the scratch memory.
     fn forward(&mut self, x: &[f64], out: &mut [f64]) {
-        let cascade = self.low_pass.cascade;
+        let cascade = self.cascade;
         let level = x[0];
         extend_left(x, &mut self.extension);
         let far = self.extension[0];
@@ -147,7 +157,7 @@ impl ZeroPhase {
 
     /// Filters `out` from its end to its beginning and puts the level back.
     fn backward(&mut self, level: f64, out: &mut [f64]) {
-        let cascade = self.low_pass.cascade;
+        let cascade = self.cascade;
         let (far, last) = (self.extension[self.extension.len() - 1], out[out.len() - 1]);
         let mut state = cascade.steady(far, self.chord(last - far));
         cascade.run(&mut state, in_place(self.extension.iter_mut().rev()), |y| y);
