@@ -30,11 +30,12 @@ def run_demo(out: str, json_wanted: bool) -> int:
     from ..diagnosis import study
     from ..measurement import read
     from ..model import Model
-    from ..report import write_report
     from ..tb038 import evaluate
 
     folder = Path(out)
     _lay_out(folder)
+    from ..report import write_report
+
     with bar() as progress:
         runs = read([folder / name for name in RUNS])
         check = evaluate(runs)
