@@ -112,7 +112,7 @@ def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
 def _features(problem: Problem, base: State, tried: State, c: Card) -> list[Feature]:
     if not shapes_contact(c.name):
         more = tried.made.matrix[0].shape[1] - base.made.matrix[0].shape[1]
-        added = tuple(m[:, -1 - more : -1] for m in tried.made.matrix)
+        added = tuple(m[:, -2 - more : -2] for m in tried.made.matrix)
         features = [Feature(c.name, added)]
         # Inertia shows where the speed changes most.
         return [*features, Feature(c.name, added, inside_zones=True)] if c.name == "inertia" else features

@@ -176,21 +176,20 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
 
 
 def _predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    # The last column is the measurement less what is known beforehand, so that the difference puts it back.
-    return matrix[:, :-1] @ coefficients + (r.effort - matrix[:, -1])
+    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The common
+    # shift of the starts belongs to the sensor: the error is that of the model without it.
+    return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
 def _folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
     """Predict every stroke with coefficients that have not seen its fold."""
-    from .equations import solve
-
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]
     for k, chosen in enumerate(search.fold_states):
         if chosen is None:
             continue
         inside = search.folds.of_stroke == k
-        coefficients = solve(chosen.blocks.gram[~inside].sum(axis=0))
+        coefficients = chosen.blocks.solve(~inside)
         for s, here in zip(strokes, inside, strict=True):
             if here:
                 r, m = problem.runs[s.run], chosen.made.matrix[s.run]

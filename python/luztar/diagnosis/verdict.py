@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, equivalent, gain
 from .chance import p_value_floor
+from .equations import start_uncertainty_s
 from .fit import Fit
 from .score import Detection
-from .terms import least_delay_s, least_travel
+from .terms import least_travel
 
 # One level over all tests of a look.
 ALPHA = 0.05
@@ -66,7 +67,7 @@ def folded(fitted: Fit, found: Sequence[Candidate]) -> dict[str, str]:
             out[c.name] = "coulomb"
         elif c.name == "freeplay" and inner[0] < 1.5 * least_travel(fitted.runs):
             out[c.name] = "coulomb"
-        elif c.name == "delay" and inner[0] < least_delay_s(fitted.runs):
+        elif c.name == "delay" and inner[0] < start_uncertainty_s(fitted.runs):
             out[c.name] = "coulomb"
     return out
 
