@@ -163,3 +163,13 @@ def test_findings_reach_the_reader(answer, capsys, texts: list[str]) -> None:
     out, err = capsys.readouterr()
     assert "torque is taken as Nm" in out.split("Data")[1]
     assert not err
+
+
+def test_another_mistake_with_a_run_that_has_a_hole_is_still_a_mistake(answer, texts: list[str]) -> None:
+    lines = texts[0].splitlines()
+    lines[900] = lines[900].rsplit(",", 1)[0] + ","
+    Path("hole.csv").write_text("\n".join(lines) + "\n")
+    error = answer("diagnose", "hole.csv", "--model", "rig", code=2)["error"]
+    assert "hole.csv" in error["where"]
+    wrong = answer("diagnose", "run1.csv", "hole.csv", "--model", "rig", "--band", "60", code=3)["error"]
+    assert wrong["where"] == "run1.csv"

@@ -74,7 +74,7 @@ def _failed(error: Exception, as_json: bool, debug: bool) -> int:
         # A usage error of the parser; its class has moved between packages, its shape has not.
         code, parts = exits.INPUT, _usage(error)
     else:
-        code, parts = exits.INTERNAL, _internal(error)
+        code, parts = exits.INTERNAL, _internal(error, debug)
     if as_json:
         say({"schema": 1, "error": parts})
     say_error(**parts)
@@ -88,7 +88,7 @@ def _usage(error: Exception) -> dict[str, str]:
     return {"kind": kind.rstrip("."), "where": where, "remedy": f"See '{where} --help'."}
 
 
-def _internal(error: Exception) -> dict[str, str]:
+def _internal(error: Exception, debug: bool) -> dict[str, str]:
     from .. import __version__
 
     text = " ".join(str(error).split())
@@ -102,6 +102,6 @@ def _internal(error: Exception) -> dict[str, str]:
             place = f"{name}, {frames.tb_frame.f_code.co_name}"
         frames = frames.tb_next
     remedy = f"This is a fault of luztar, not yours: please report it with the command and this version ({system})."
-    if "--debug" not in sys.argv:
+    if not debug:
         remedy += " --debug shows where it happened."
     return {"kind": kind, "where": place, "remedy": remedy}

@@ -158,9 +158,7 @@ def unreadable(error: LuztarError, runs: Sequence[Run], model: Model) -> LuztarE
         return error
     channels = (None, "time", model.structure.motion, model.structure.effort)
     for run in runs:
-        for finding in run.integrity.findings:
-            if finding.kind in UNREADABLE and finding.channel in channels:
-                return UnreadablePart(error.kind, error.where or run.name, error.remedy)
-        if not run.integrity.complete:
-            return UnreadablePart(error.kind, error.where or run.name, error.remedy)
+        lost = [f for f in run.integrity.findings if f.kind in UNREADABLE and f.channel in channels]
+        if run.name in error.where and (lost or not run.integrity.complete):
+            return UnreadablePart(error.kind, error.where, error.remedy)
     return error
