@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
+from ..diagnosis.chance import p_value_floor
+from ..diagnosis.verdict import MANY_STROKES
 from ..diagnosis.words import number
 from ..model import card
 from . import sentences
+from .style import rounded
 
 if TYPE_CHECKING:
-    from ..diagnosis.diagnose import Diagnosis
+    from ..diagnosis.diagnose import Diagnosis, Tried
     from ..diagnosis.study import Study
     from ..tb038.check import Check
 
@@ -51,9 +54,7 @@ def provenance(study: Study | None, check: Check | None, when: datetime) -> dict
     return made
 
 
-def sections(
-    study: Study | None, check: Check | None, not_checked: str | None, made: dict[str, Any]
-) -> dict[str, Any]:
+def sections(study: Study | None, check: Check | None, not_checked: str | None, made: dict[str, Any]) -> dict[str, Any]:
     """Return everything the template shows except figures and scripts."""
     return {
         "title": "Friction report",
@@ -72,7 +73,9 @@ def _study(study: Study) -> dict[str, Any]:
     fit = study.steps[-1].fit
     return {
         "verdict": study.verdict,
-        "class": CLASS_OF_VERDICT[study.verdict] if len(study.steps) == 1 or study.verdict == "unexplained" else "found",
+        "class": CLASS_OF_VERDICT[study.verdict]
+        if len(study.steps) == 1 or study.verdict == "unexplained"
+        else "found",
         "sentence": sentences.verdict(study),
         "meaning": sentences.VERDICT_MEANING[study.verdict],
         "why": study.last.judgement.why,
@@ -80,9 +83,9 @@ def _study(study: Study) -> dict[str, Any]:
         "effort": fit.model.structure.effort,
         "unit": fit.noise_floor.unit,
         "floor": {
-            "rms": number(study.noise_floor.rms),
-            "low": number(study.noise_floor.low),
-            "high": number(study.noise_floor.high),
+            "rms": rounded(study.noise_floor.rms),
+            "low": rounded(study.noise_floor.low),
+            "high": rounded(study.noise_floor.high),
             "method": study.noise_floor.method,
         },
         "improved": len(study.steps) > 1,
@@ -111,9 +114,9 @@ def _steps(study: Study) -> list[dict[str, Any]]:
                 "look": None if step.added is None else card(step.added, structure).look,
                 "others": [card(n, structure).title for n in step.set if n != step.added],
                 "effects": ", ".join(step.fit.model.effects),
-                "unseen": number(e.held_out_rms),
+                "unseen": rounded(e.held_out_rms),
                 "unseen_percent": f"{100 * e.held_out_relative:.1f}",
-                "seen": number(e.rms),
+                "seen": rounded(e.rms),
                 "floor_ratio": f"{e.floor_ratio:.1f}",
                 "provisional": step.provisional,
                 "experiment": step.next_experiment.text if step.next_experiment else None,
@@ -130,18 +133,19 @@ def _look(look: Diagnosis) -> dict[str, Any]:
         "why": look.judgement.why,
         "strokes": look.detection.strokes,
         "p_value": probability(look.detection.p_value),
-        "lack_of_fit": probability(look.detection.lack_of_fit),
-        "along": look.detection.along,
+        "p_floor": probability(p_value_floor(look.detection.strokes))
+        if look.detection.strokes < MANY_STROKES
+        else None,
+        "outcome": sentences.outcome(look),
         "candidates": [
             {
                 "title": card(c.effect, structure).title,
                 "effect": c.effect,
-                "unseen": number(c.held_out_rms),
+                "unseen": rounded(c.held_out_rms),
                 "gain": f"{100 * c.gain:.1f}",
                 "errors": f"{c.gain_errors:.1f}",
-                "p_value": "" if c.p_value is None else probability(c.p_value),
-                "remark": _remark(c.in_set, c.decoy, c.same_as),
-                "in_set": c.in_set and not c.decoy,
+                "remark": _remark(c, look),
+                "offered": c.effect in look.named,
                 "decoy": c.decoy,
                 "parameters": ", ".join(f"{k} = {number(v)}" for k, v in c.parameters.items()),
             }
@@ -150,10 +154,11 @@ def _look(look: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _remark(in_set: bool, decoy: bool, same_as: str | None) -> str:
-    words = ["decoy"] if decoy else []
-    words += [f"came out as {same_as}"] if same_as else []
-    words += ["cannot be told from the best"] if in_set else []
+def _remark(c: Tried, look: Diagnosis) -> str:
+    words = ["decoy"] if c.decoy else []
+    words += [f"came out as {c.same_as}"] if c.same_as else []
+    if look.named and c.in_set:
+        words += ["best" if c.effect == look.named[0] else "cannot be told from the best"]
     return ", ".join(words)
 
 

@@ -69,14 +69,10 @@ def residual_time(fit: Fit) -> Any:
     """
     shown = list(zip(fit.runs, fit.residual, strict=True))[:MOST_PANELS]
     picture = panels(
-        rows=len(shown), cols=1, subplot_titles=[plain(r.name) for r, _ in shown], vertical_spacing=0.3 / len(shown)
+        rows=len(shown), cols=1, subplot_titles=[plain(r.name) for r, _ in shown], vertical_spacing=0.32 / len(shown)
     )
     limit = max(float(np.abs(e[r.usable]).max(initial=0.0)) for r, e in shown) or 1.0
     for row, (r, error) in enumerate(shown, start=1):
-        for s in r.strokes:
-            if s.direction > 0:
-                edges = {"x0": float(r.time_s[s.onset]), "x1": float(r.time_s[s.last - 1])}
-                picture.add_vrect(**edges, fillcolor="#E8F0F8", line_width=0, layer="below", row=row, col=1)
         values = np.where(r.usable, error, np.nan)
         at = extremes(values, points=_budget(len(shown)))
         picture.add_scatter(
@@ -89,6 +85,12 @@ def residual_time(fit: Fit) -> Any:
             row=row,
             col=1,
         )
+        # After the curve: a panel without one takes no shapes.
+        for s in r.strokes:
+            if s.direction > 0:
+                edges = {"x0": float(r.time_s[s.onset]), "x1": float(r.time_s[s.last - 1])}
+                picture.add_vrect(**edges, fillcolor="#DCE8F4", line_width=0, layer="below", row=row, col=1)
+    picture.update_xaxes(range=[0.0, max(float(r.time_s[-1]) for r, _ in shown)], showgrid=False)
     picture.update_yaxes(range=[-1.05 * limit, 1.05 * limit], title_text=fit.noise_floor.unit)
     picture.update_xaxes(title_text="time [s]", row=len(shown), col=1)
     return dressed(picture, height=80 + PANEL_HEIGHT * len(shown))
@@ -101,8 +103,8 @@ def _loop_traces(fit: Fit, colour: str, words: str, points: int) -> list[Any]:
     for number, (r, predicted) in enumerate(zip(fit.runs, fit.predicted, strict=True)):
         x = r.motion[r.usable] * factor
         for values, into, name, line in (
-            (r.effort, measured, "measured", {"color": MEASURED, "width": 2}),
-            (predicted, modelled, words, {"color": colour, "width": 1.2}),
+            (r.effort, measured, "measured", {"color": MEASURED, "width": 3.5}),
+            (predicted, modelled, words, {"color": colour, "width": 1}),
         ):
             y = values[r.usable]
             at = extremes(x, y, points=points)

@@ -12,7 +12,7 @@ from .curves import loops_before_after as loops_before_after
 from .curves import residual_time as residual_time
 from .maps import where_before_after as where_before_after
 from .maps import where_map as where_map
-from .style import AFTER, BEFORE, DECOY, FLOOR, INK, QUIET, dressed, numbers, plain, plotly
+from .style import AFTER, BEFORE, DECOY, FLOOR, INK, QUIET, dressed, numbers, plain, plotly, rounded
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnose import Diagnosis, Tried
@@ -43,7 +43,7 @@ def ladder(study: Study) -> Any:
             "pattern": {"shape": ["/" if s.provisional else "" for s in steps]},
         },
         width=0.55,
-        text=[f" {number(e.held_out_rms)} {e.unit} ({100 * e.held_out_relative:.1f} % of the measurement)" for e in errors],
+        text=[f" {rounded(e.held_out_rms)} {e.unit} ({100 * e.held_out_relative:.1f} %)" for e in errors],
         textposition="outside",
         cliponaxis=False,
         hoverinfo="skip",
@@ -54,7 +54,7 @@ def ladder(study: Study) -> Any:
         x=floor.rms,
         line={"color": FLOOR, "width": 2},
         annotation={
-            "text": f"noise floor {number(floor.rms)} ({number(floor.low)} to {number(floor.high)}) {floor.unit}",
+            "text": f"noise floor {rounded(floor.rms)} ({rounded(floor.low)} to {rounded(floor.high)}) {floor.unit}",
             "font": {"color": "#00694D"},
             "yanchor": "bottom",
             "xanchor": "left",
@@ -63,11 +63,11 @@ def ladder(study: Study) -> Any:
     )
     top = max([e.held_out_rms for e in errors] + [floor.high])
     # Room for the words at the end of the longest bar.
-    picture.update_xaxes(range=[0.0, 1.4 * top], title_text=f"unseen error, rms [{floor.unit}]")
+    picture.update_xaxes(range=[0.0, 1.3 * top], title_text=f"unseen error, rms [{floor.unit}] (% of the measurement)")
     picture.update_yaxes(
         tickvals=list(range(len(steps))), ticktext=labels, range=[len(steps) - 0.45, -0.55], showgrid=False
     )
-    return dressed(picture, height=120 + 52 * len(steps))
+    return listed(picture, height=120 + 52 * len(steps))
 
 
 def step_label(step: Step, study: Study) -> str:
@@ -90,44 +90,57 @@ def candidates(diagnosis: Diagnosis) -> Any:
     diagnosis : Diagnosis
     """
     fit = diagnosis.fit
-    unit = fit.noise_floor.unit
-    listed = [c for c in diagnosis.candidates if math.isfinite(c.held_out_rms)]
-    picture = plotly().Figure()
+    shown = [c for c in diagnosis.candidates if math.isfinite(c.held_out_rms)]
+    values = [c.held_out_rms for c in shown]
+    # The gain is a share of the squared error, so any candidate tells what the model has without it.
+    base = math.sqrt(values[0] ** 2 / max(1.0 - shown[0].gain, 1e-12)) if shown else 0.0
+    low = min([*values, base])
+    # Differences of less than a few per cent must not fill the picture, nor must what only does harm.
+    spare = max(0.5 * (base - low), 0.04 * base)
+    edge = base + spare
+    best = "best" if len(diagnosis.named) == 1 else "cannot be told from the best"
     groups: list[tuple[str, str, str, list[Tried]]] = [
-        ("cannot be told from the best", AFTER, "circle", [c for c in listed if c.in_set and not c.decoy]),
-        ("other effects", QUIET, "circle", [c for c in listed if not c.in_set and not c.decoy]),
-        ("decoys: no physics, a ruler for chance", DECOY, "x", [c for c in listed if c.decoy]),
+        (best, AFTER, "circle", [c for c in shown if _offered(c, diagnosis)]),
+        ("other effects", QUIET, "circle", [c for c in shown if not _offered(c, diagnosis) and not c.decoy]),
+        ("decoys: no physics, a ruler for chance", DECOY, "x", [c for c in shown if c.decoy]),
     ]
-    place = {c.effect: i for i, c in enumerate(listed)}
+    picture = plotly().Figure()
+    place = {c.effect: i for i, c in enumerate(shown)}
     for name, colour, symbol, members in groups:
         if members:
             picture.add_scatter(
-                x=numbers(c.held_out_rms for c in members),
+                x=numbers(min(c.held_out_rms, edge) for c in members),
                 y=[place[c.effect] for c in members],
                 mode="markers",
-                marker={"color": colour, "symbol": symbol, "size": 11, "line": {"color": INK, "width": 0.6}},
+                marker={
+                    "color": colour,
+                    "symbol": [symbol if c.held_out_rms <= edge else "triangle-right" for c in members],
+                    "size": 11,
+                    "line": {"color": INK, "width": 0.6},
+                },
                 name=name,
-                hovertext=[f"{100 * c.gain:.1f} % of the squared error" for c in members],
-                hoverinfo="x+text",
+                hovertext=[f"{rounded(c.held_out_rms)}: {100 * c.gain:.1f} % off the squared error" for c in members],
+                hoverinfo="text",
             )
-    values = [c.held_out_rms for c in listed]
-    # The gain is a share of the squared error, so any candidate tells what the model has without it.
-    base = math.sqrt(values[0] ** 2 / max(1.0 - listed[0].gain, 1e-12)) if listed else 0.0
-    if listed:
-        picture.add_vline(
-            x=base,
-            line={"color": BEFORE, "dash": "dash", "width": 1.5},
-            annotation={"text": "without any of them", "font": {"color": BEFORE}, "yanchor": "bottom"},
-            annotation_position="top",
-        )
-    # Differences of less than a few per cent must not fill the picture.
-    low, high = min([*values, base]), max([*values, base])
-    spare = max(0.06 * (high - low), 0.03 * high)
-    picture.update_xaxes(range=[low - spare, high + spare], title_text=f"unseen error with this effect added, rms [{unit}]")
+    picture.add_vline(
+        x=base,
+        line={"color": BEFORE, "dash": "dash", "width": 1.5},
+        annotation={"text": "without any of them", "font": {"color": BEFORE}, "yanchor": "bottom", "xanchor": "right"},
+        annotation_position="top",
+    )
+    picture.update_xaxes(
+        range=[low - 0.3 * spare, edge + 0.15 * spare],
+        title_text=f"unseen error with this effect added, rms [{fit.noise_floor.unit}]; triangles lie further right",
+    )
     structure = fit.model.structure_name
-    labels = [f"{plain(card(c.effect, structure).title)}{_folded(c)} " for c in listed]
-    picture.update_yaxes(tickvals=list(range(len(listed))), ticktext=labels, range=[len(listed) - 0.4, -0.6])
-    return dressed(picture, height=150 + 24 * len(listed), legend={"orientation": "h", "y": -80 / (60 + 24 * max(len(listed), 1))})
+    labels = [f"{plain(card(c.effect, structure).title)}{_folded(c)} " for c in shown]
+    picture.update_yaxes(tickvals=list(range(len(shown))), ticktext=labels, range=[len(shown) - 0.4, -0.6])
+    return listed(picture, height=150 + 24 * len(shown))
+
+
+def _offered(c: Tried, diagnosis: Diagnosis) -> bool:
+    # Where nothing is named, the best of the candidates are no answer and are not highlighted.
+    return c.effect in diagnosis.named
 
 
 def _folded(c: Tried) -> str:
@@ -152,7 +165,10 @@ def parameters(fit: Fit) -> Any:
             continue
         below, above = 100.0 * (e.value - e.low) / size, 100.0 * (e.high - e.value) / size
         rows[e.identifiable].append((place, min(below, WIDEST_PERCENT), min(above, WIDEST_PERCENT)))
-    for sound, colour, name in ((True, AFTER, "determined by the data"), (False, QUIET, "not determined, or no interval")):
+    for sound, colour, name in (
+        (True, AFTER, "determined by the data"),
+        (False, QUIET, "not determined, or no interval"),
+    ):
         if rows[sound]:
             picture.add_scatter(
                 x=[0.0] * len(rows[sound]),
@@ -171,6 +187,18 @@ def parameters(fit: Fit) -> Any:
                 hoverinfo="skip",
             )
     widest = max([5.0, *(max(b, a) for part in rows.values() for _, b, a in part)])
-    picture.update_xaxes(range=[-1.1 * widest, 1.1 * widest], title_text="95 % interval [% of the value]", zeroline=True)
+    picture.update_xaxes(
+        range=[-1.1 * widest, 1.1 * widest], title_text="95 % interval [% of the value]", zeroline=True
+    )
     picture.update_yaxes(tickvals=list(range(len(labels))), ticktext=labels, range=[len(labels) - 0.4, -0.6])
-    return dressed(picture, height=130 + 42 * len(labels), legend={"orientation": "h", "y": -80 / (60 + 42 * max(len(labels), 1))})
+    return listed(picture, height=130 + 42 * len(labels))
+
+
+def listed(picture: Any, *, height: int) -> Any:
+    """Return a figure whose rows are named things rather than numbers, its legend below it."""
+    made = dressed(picture, height=height)
+    # The rows count from 0, which is no place for an axis; the legend keeps its distance whatever the height.
+    made.update_yaxes(zeroline=False)
+    made.update_layout(legend={"orientation": "h", "yref": "container", "y": 0.0, "yanchor": "bottom", "x": 0.0})
+    made.update_layout(margin={"b": 84})
+    return made

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from . import figures
-from .style import plain
+from .style import FONT, INK, plain
 
 if TYPE_CHECKING:
     from ..diagnosis.study import Study
@@ -55,10 +55,13 @@ def _of_check(check: Check) -> dict[str, Any]:
     made["layout"] |= {
         "template": "none",
         "height": 560,
+        "font": {"family": FONT, "size": 12, "color": INK},
         "title": None,
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
         "margin": {"l": 60, "r": 20, "t": 20, "b": 50},
         "legend": {"orientation": "h", "y": -0.14},
     }
+    highest = max([check.rules.mean_max_nm, *(v.max_abs_nm or 0.0 for v in check.verifications)])
+    made["layout"]["yaxis"] |= {"range": [-1.12 * highest, 1.12 * highest]}
     return made

@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from ..diagnosis.diagnose import Diagnosis
     from ..diagnosis.study import Study
 
-# Blue: the model is too high. White: it agrees. Red: it is too low. Read by the colour blind, too.
-SCALE = [[0.0, "#2166AC"], [0.25, "#92C5DE"], [0.5, "#F7F7F7"], [0.75, "#F4A582"], [1.0, "#B2182B"]]
+# Blue: the model is too high. White: it agrees. Red: it is too low. Read by the colour blind, too. A cell without
+# samples shows the grey behind it.
+EMPTY = "#D3D8DE"
+SCALE = [[0.0, "#2166AC"], [0.25, "#92C5DE"], [0.5, "#FFFFFF"], [0.75, "#F4A582"], [1.0, "#B2182B"]]
 
 
 def where_map(comparison: Comparison | Diagnosis) -> Any:
@@ -73,4 +75,7 @@ def _maps(looks: list[tuple[Comparison | Diagnosis, str]]) -> Any:
     picture.update_yaxes(title_text=f"speed [{unit}/s]", col=1)
     bar = {"title": {"text": f"measured less<br>modelled [{structure.effort_unit}]"}, "thickness": 14}
     scale = {"colorscale": SCALE, "cmin": -(limit or 1.0), "cmax": limit or 1.0, "colorbar": bar}
-    return dressed(picture, height=80 + 230 * len(looks), coloraxis=scale)
+    made = dressed(picture, height=80 + 230 * len(looks), coloraxis=scale, plot_bgcolor=EMPTY)
+    made.update_xaxes(showgrid=False, zeroline=False)
+    made.update_yaxes(showgrid=False, zeroline=False)
+    return made

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..diagnosis.words import number
 from ..model import card
+from .style import rounded
 
 if TYPE_CHECKING:
+    from ..diagnosis.diagnose import Diagnosis
     from ..diagnosis.study import Study
     from ..tb038.check import Check
 
@@ -81,18 +82,27 @@ def _end(study: Study) -> str:
     }.get(study.verdict, "")
 
 
+def outcome(look: Diagnosis) -> str:
+    """Return what one look at the candidates came to."""
+    names = titles(look.named, look.fit.model.structure_name, "or") if look.named else ""
+    why = f": {look.judgement.why}" if look.judgement.why else ""
+    if names:
+        return f"Best: {names}{why}."
+    return f"None of them is named{why}."
+
+
 def error_sentence(study: Study) -> str:
     """Return the error before and after against the floor as one sentence."""
     first, last = study.steps[0].fit.error, study.steps[-1].fit.error
     floor = study.noise_floor
-    limit = f"the noise floor is {number(floor.rms)} {floor.unit} ({number(floor.low)} to {number(floor.high)})"
+    limit = f"the noise floor is {rounded(floor.rms)} {floor.unit} ({rounded(floor.low)} to {rounded(floor.high)})"
     if len(study.steps) == 1:
         return (
-            f"The model misses torque it has not seen by {number(first.held_out_rms)} {first.unit} rms "
+            f"The model misses torque it has not seen by {rounded(first.held_out_rms)} {first.unit} rms "
             f"({100 * first.held_out_relative:.1f} % of the measurement); {limit}."
         ).replace("torque", study.model.structure.effort)
     return (
-        f"The unseen error falls from {number(first.held_out_rms)} to {number(last.held_out_rms)} {first.unit} rms "
+        f"The unseen error falls from {rounded(first.held_out_rms)} to {rounded(last.held_out_rms)} {first.unit} rms "
         f"({100 * first.held_out_relative:.1f} to {100 * last.held_out_relative:.1f} % of the measurement); {limit}."
     )
 
@@ -139,4 +149,5 @@ def _to_tell(separates: Sequence[str], structure: str) -> str:
 
 
 def _lower(text: str) -> str:
-    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+    # An abbreviation stays as it is.
+    return text if text[1:2].isupper() else text[:1].lower() + text[1:]

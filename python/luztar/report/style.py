@@ -22,6 +22,7 @@ QUIET = "#B8BEC5"
 DECOY = "#CC79A7"
 RUNS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 INK = "#1F2933"
+FONT = "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif"
 GRID = "#E4E7EB"
 # Six digits are finer than any line on a screen, and a third of the characters of a full double.
 DIGITS = 6
@@ -55,6 +56,11 @@ def numbers(values: Iterable[float]) -> list[float | None]:
     return [float(f"{v:.{DIGITS}g}") if math.isfinite(v) else None for v in map(float, values)]
 
 
+def rounded(value: float) -> str:
+    """Return an error with three digits: its own uncertainty shows in the third at the latest."""
+    return f"{value:.3g}"
+
+
 def plain(text: str) -> str:
     """Return text that a figure shows as it is: plotly reads tags, links among them, in names and titles."""
     return escape(text, quote=False)
@@ -74,7 +80,7 @@ def dressed(figure: Any, *, height: int, title: str = "", **layout: Any) -> Any:
         template="none",
         height=height,
         title={"text": title, "x": 0.0, "xanchor": "left", "font": {"size": 15}} if title else None,
-        font={"family": "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif", "size": 12, "color": INK},
+        font={"family": FONT, "size": 12, "color": INK},
         paper_bgcolor="white",
         plot_bgcolor="white",
         margin={"l": 70, "r": 20, "t": 60 if title else 34, "b": 50},
