@@ -99,7 +99,8 @@ def residual_time(fit: Fit) -> Any:
 def _loop_traces(fit: Fit, colour: str, words: str, points: int) -> list[Any]:
     go = plotly()
     factor, _, _ = motion_axis(fit.model.structure)
-    measured, modelled = [], []
+    measured: list[Any] = []
+    modelled: list[Any] = []
     for number, (r, predicted) in enumerate(zip(fit.runs, fit.predicted, strict=True)):
         x = r.motion[r.usable] * factor
         for values, into, name, line in (

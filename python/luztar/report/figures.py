@@ -98,6 +98,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
     # Differences of less than a few per cent must not fill the picture, nor must what only does harm.
     spare = max(0.5 * (base - low), 0.04 * base)
     edge = base + spare
+    beyond = "; triangles: beyond" if any(v > edge for v in values) else ""
     best = "best" if len(diagnosis.named) == 1 else "cannot be told from the best"
     groups: list[tuple[str, str, str, list[Tried]]] = [
         (best, AFTER, "circle", [c for c in shown if _offered(c, diagnosis)]),
@@ -130,7 +131,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
     )
     picture.update_xaxes(
         range=[low - 0.3 * spare, edge + 0.15 * spare],
-        title_text=f"unseen error with this effect added, rms [{fit.noise_floor.unit}]; triangles lie further right",
+        title_text=f"unseen error with the effect added [{fit.noise_floor.unit}]{beyond}",
     )
     structure = fit.model.structure_name
     labels = [f"{plain(card(c.effect, structure).title)}{_folded(c)} " for c in shown]
@@ -200,5 +201,5 @@ def listed(picture: Any, *, height: int) -> Any:
     # The rows count from 0, which is no place for an axis; the legend keeps its distance whatever the height.
     made.update_yaxes(zeroline=False)
     made.update_layout(legend={"orientation": "h", "yref": "container", "y": 0.0, "yanchor": "bottom", "x": 0.0})
-    made.update_layout(margin={"b": 84})
+    made.update_layout(margin={"b": 96})
     return made
