@@ -111,16 +111,8 @@ def test_six_verifications_have_a_word_and_a_class(page: Page) -> None:
 def test_every_place_has_its_figure_and_every_figure_its_place(page: Page) -> None:
     places = {a["data-figure"] for _, a in page.elements if "data-figure" in a}
     assert places == set(page.json("luztar-figures"))
-    assert {
-        "ladder",
-        "tb038",
-        "loops",
-        "where",
-        "candidates-first",
-        "candidates-last",
-        "parameters",
-        "residual",
-    } == places
+    assert {"tb038", "candidates-first", "candidates-last", "residual"} < places
+    assert {"ladder", "loops", "where", "parameters"} < places
 
 
 def test_the_json_twin_is_the_study(page: Page, study: Study) -> None:
