@@ -1,4 +1,5 @@
-from typing import final
+from collections.abc import Sequence
+from typing import Literal, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +9,9 @@ __all__ = [
     "LineSums",
     "LowPass",
     "Moments",
+    "Recording",
     "__version__",
+    "effect_cards",
     "fit_line",
     "zero_phase",
 ]
@@ -94,3 +97,66 @@ class LineSums:
     def state(self) -> tuple[int, list[float]]: ...
     @staticmethod
     def from_state(count: int, state: list[float]) -> LineSums: ...
+
+# effects
+
+@type_check_only
+class _Parameter(TypedDict):
+    key: str
+    symbol: str
+    meaning: str
+    low: float
+    high: float
+    role: Literal["linear", "amplitude", "phase", "inner"]
+    grid: tuple[str, float] | None
+
+@type_check_only
+class _Card(TypedDict):
+    name: str
+    title: str
+    kind: Literal["torque", "friction_level", "spring", "transmission", "sensor", "decoy"]
+    equation: str
+    look: str
+    cause: str
+    check: str
+    typical: str
+    source: str
+    behind_gap: bool
+    per_turn: bool
+    needs: str | None
+    parameters: list[_Parameter]
+
+def effect_cards() -> list[_Card]: ...
+
+# driven runs
+
+_Terms = Sequence[tuple[str, Sequence[float]]]
+
+@final
+class Recording:
+    def __new__(
+        cls,
+        position: NDArray[np.float64],
+        *,
+        sample_rate_hz: float,
+        band_hz: float | None,
+        decimate: int | None,
+        anti_alias: bool,
+        already_filtered: bool,
+        hysteresis: float,
+        minimum_travel: float,
+        turn_rad_per_unit: float,
+    ) -> Recording: ...
+    def __len__(self) -> int: ...
+    @property
+    def resolution(self) -> float: ...
+    @property
+    def range(self) -> float: ...
+    @property
+    def decimate(self) -> int: ...
+    def kept(self) -> list[NDArray[np.float64]]: ...
+    def strokes(self) -> list[tuple[int, int, float, float]]: ...
+    def measured(self, channel: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def state(self, model: _Terms) -> NDArray[np.float64]: ...
+    def reversal_shift(self, model: _Terms, before_s: float, after_s: float) -> NDArray[np.float64]: ...
+    def columns(self, model: _Terms, wanted: Sequence[int]) -> NDArray[np.float64]: ...

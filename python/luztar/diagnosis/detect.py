@@ -13,7 +13,8 @@ def detection(fitted: Fit, candidates: Sequence[Feature]) -> Detection:
     """Test a fitted model against candidates and for what repeats without any."""
     problem, state = fitted.problem, fitted.state
     made = jacobian(problem, state, continuous(problem, state, sharpness=True))
-    return detect(problem.runs, made.matrix, candidates, state.made.shift, problem.weights.level)
+    shift = float(state.coefficients[-1])
+    return detect(problem.runs, made.matrix, candidates, problem.weights, shift, state.blocks.bound)
 
 
 def lack_of_fit(fitted: Fit) -> Detection:

@@ -5,7 +5,9 @@ solve and not a pass over the samples.
 
 The instant at which a reversal starts is known to one step of the sensor only. Each stroke therefore carries a shift
 of its reversal as a random effect with that standard deviation; it is eliminated from the block (a ridge of one
-column), so that the jump of the torque at a reversal does not drown the rest.
+column), so that the jump of the torque at a reversal does not drown the rest. What all starts have in common (the
+sensor shows them a little late or early on average) is one more coefficient, kept inside the same uncertainty: without
+it those few milliseconds would be sold as a delay of the torque channel.
 """
 
 from __future__ import annotations
@@ -53,96 +55,111 @@ class Blocks:
     Attributes
     ----------
     gram : ndarray, shape (strokes, p + 1, p + 1)
-        Products of the p columns and the measurement (last), the reversal's shift eliminated.
+        Products of the p columns (the last of them the common shift of the starts) and the measurement (last), each
+        stroke's own shift eliminated.
+    bound : float
+        The common shift's coefficient stays within plus or minus this.
     run : ndarray of int, shape (strokes,)
         The run of each stroke.
     samples : ndarray of int, shape (strokes,)
     """
 
     gram: np.ndarray
+    bound: float
     run: np.ndarray
     samples: np.ndarray
+
+    def solve(self, chosen: np.ndarray | None = None) -> np.ndarray:
+        """Return the least-squares coefficients for all strokes or the chosen ones."""
+        return solve((self.gram if chosen is None else self.gram[chosen]).sum(axis=0), self.bound)
 
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a model for every run, with what is needed to form blocks.
+    """The columns of a model for every run.
 
     Attributes
     ----------
     terms : Terms
     matrix : tuple of ndarray, shape (n, p + 1)
-        Per run; the measurement, less what is known beforehand, is the last column.
-    shift : tuple of ndarray, shape (n,)
-        Per run: what a shift of the reversals adds, per second and unit of friction level.
+        Per run: the effects' columns in order; then what a shift of the starts adds, per second and unit of friction
+        level; last the measurement, less what is known beforehand.
     """
 
     terms: Terms
     matrix: tuple[np.ndarray, ...]
-    shift: tuple[np.ndarray, ...]
+
+    def having(self, more: Sequence[np.ndarray]) -> Columns:
+        """Return the columns with further ones (shape (n, q) per run) after those of the effects."""
+        matrix = [np.column_stack([m[:, :-2], c, m[:, -2:]]) for m, c in zip(self.matrix, more, strict=True)]
+        return Columns(self.terms, tuple(matrix))
+
+    @property
+    def shift(self) -> tuple[np.ndarray, ...]:
+        """What a shift of the starts adds, per run."""
+        return tuple(m[:, -2] for m in self.matrix)
 
 
-def columns(runs: Sequence[Prepared], terms: Terms, band_hz: float) -> Columns:
+def columns(runs: Sequence[Prepared], terms: Terms) -> Columns:
     """Ask the core for the columns of all terms."""
     pairs = terms.pairs()
     matrix = []
     for r in runs:
-        block = np.empty((r.effort.size, 0))
-        if pairs:
-            block = r.recording.columns(pairs, list(range(len(pairs)))).T
-        matrix.append(np.column_stack([block, r.effort]))
-    return Columns(terms, tuple(matrix), shifts(runs, terms, band_hz))
-
-
-def shifts(runs: Sequence[Prepared], terms: Terms, band_hz: float) -> tuple[np.ndarray, ...]:
-    """Ask the core for the column of the reversals' shift."""
-    # Within one period of the band's edge before and two after the start, a reversal is over.
-    return tuple(r.recording.reversal_shift(terms.pairs(), 1.0 / band_hz, 2.0 / band_hz) for r in runs)
+        block = r.recording.columns(pairs, list(range(len(pairs)))).T if pairs else np.empty((r.effort.size, 0))
+        shift = r.recording.start_shift(pairs)
+        matrix.append(np.column_stack([block, shift, r.effort]))
+    return Columns(terms, tuple(matrix))
 
 
 def blocks(runs: Sequence[Prepared], made: Columns, weights: Weights) -> Blocks:
     """Form the normal equations of every stroke."""
     grams, owners, counts = [], [], []
-    for r, matrix, shift in zip(runs, made.matrix, made.shift, strict=True):
+    for r, matrix in zip(runs, made.matrix, strict=True):
         for stroke in r.strokes:
             part = slice(stroke.first, stroke.last)
-            keep = r.usable[part]
-            a = matrix[part][keep]
-            z = shift[part][keep]
+            a = matrix[part][r.usable[part]]
             gram = a.T @ a
-            cross = a.T @ z
+            cross = gram[:, -2]
             ridge = weights.ridge(r.step_s, stroke.onset_uncertainty_s)
-            grams.append(gram - np.outer(cross, cross) / (z @ z + ridge))
+            grams.append(gram - np.outer(cross, cross) / (cross[-2] + ridge))
             owners.append(stroke.run)
             counts.append(len(a))
-    return Blocks(np.array(grams), np.array(owners), np.array(counts))
+    bound = weights.level * start_uncertainty_s(runs)
+    return Blocks(np.array(grams), bound, np.array(owners), np.array(counts))
 
 
-def extended(runs: Sequence[Prepared], base: Columns, more: Sequence[np.ndarray]) -> Columns:
-    """Return the columns with further ones (one array of shape (n, q) per run) put before the measurement."""
-    matrix = tuple(np.column_stack([m[:, :-1], c, m[:, -1]]) for m, c in zip(base.matrix, more, strict=True))
-    return Columns(base.terms, matrix, base.shift)
+def start_uncertainty_s(runs: Sequence[Prepared]) -> float:
+    """Return by how much the instant of a start is uncertain, on average."""
+    return float(np.mean([s.onset_uncertainty_s for r in runs for s in r.strokes]))
 
 
-def solve(gram: np.ndarray) -> np.ndarray:
+def solve(gram: np.ndarray, bound: float = np.inf) -> np.ndarray:
     """Return the least-squares coefficients of one summed block.
 
     Columns are scaled to unit length; where two cannot be told apart the shortest solution is taken, and the
-    intervals say that the data do not decide between them.
+    intervals say that the data do not decide between them. The last coefficient stays within plus or minus ``bound``.
     """
     p = gram.shape[0] - 1
     if p == 0:
         return np.empty(0)
-    scale = np.sqrt(np.maximum(np.diag(gram)[:p], np.finfo(float).tiny))
-    normal = gram[:p, :p] / np.outer(scale, scale)
-    right = gram[:p, p] / scale
+    free = _solve(gram[:p, :p], gram[:p, p])
+    if abs(free[-1]) <= bound:
+        return free
+    last = float(np.copysign(bound, free[-1]))
+    q = p - 1
+    return np.append(_solve(gram[:q, :q], gram[:q, p] - last * gram[:q, q]), last)
+
+
+def _solve(products: np.ndarray, right: np.ndarray) -> np.ndarray:
+    scale = np.sqrt(np.maximum(np.diag(products), np.finfo(float).tiny))
+    normal = products / np.outer(scale, scale)
     try:
         # The condition of the scaled equations is the square of the columns'; 1e-12 leaves four digits.
         if np.linalg.cond(normal) < 1e12:
-            return np.linalg.solve(normal, right) / scale
+            return np.linalg.solve(normal, right / scale) / scale
     except np.linalg.LinAlgError:
         pass
-    return np.linalg.lstsq(normal, right, rcond=1e-12)[0] / scale
+    return np.linalg.lstsq(normal, right / scale, rcond=1e-12)[0] / scale
 
 
 def loss(gram: np.ndarray, coefficients: np.ndarray) -> np.ndarray:

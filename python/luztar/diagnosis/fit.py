@@ -19,7 +19,7 @@ from .misfit import Misfit, misfit
 from .prepare import Prepared, prepare
 from .profile import Problem, State, owners, state
 from .search import Search
-from .terms import start_terms
+from .terms import inner_grid, start_terms
 
 if TYPE_CHECKING:
     from ..measurement import Run
@@ -135,8 +135,24 @@ def fit_prepared(
     first = state(problem, start_terms(model, runs))
     search = Search(Folds.of(first.blocks))
     search.visit(first)
+    for name in model.effects:
+        _search_grid(problem, search, name)
     search.refine(problem)
     return finish(problem, search, unseen, floor)
+
+
+def _search_grid(problem: Problem, search: Search, name: str) -> None:
+    """Try the grid of an effect's inner parameters, unless the user or an earlier step has given a start.
+
+    A local search would stay where it starts: the loss over a gap is flat or has several valleys.
+    """
+    model = problem.model
+    inner = card(name, model.structure_name).inner
+    if not inner or any(f"{name}.{p.key}" in model.start for p in inner):
+        return
+    assert search.best is not None
+    for values in inner_grid(name, model, problem.runs):
+        search.visit(state(problem, search.best.terms.having(name, values), search.best, name))
 
 
 def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor: NoiseFloor) -> Fit:
@@ -176,21 +192,20 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
 
 
 def _predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    # The last column is the measurement less what is known beforehand, so that the difference puts it back.
-    return matrix[:, :-1] @ coefficients + (r.effort - matrix[:, -1])
+    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The common
+    # shift of the starts belongs to the sensor: the error is that of the model without it.
+    return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
 def _folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
     """Predict every stroke with coefficients that have not seen its fold."""
-    from .equations import solve
-
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]
     for k, chosen in enumerate(search.fold_states):
         if chosen is None:
             continue
         inside = search.folds.of_stroke == k
-        coefficients = solve(chosen.blocks.gram[~inside].sum(axis=0))
+        coefficients = chosen.blocks.solve(~inside)
         for s, here in zip(strokes, inside, strict=True):
             if here:
                 r, m = problem.runs[s.run], chosen.made.matrix[s.run]

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .equations import Blocks, loss, solve
+from .equations import Blocks, loss
 from .folds import Folds, held_out
 from .prepare import Prepared
 
@@ -25,7 +25,7 @@ SPEED_HATS = 6
 # Knots of the hats over travel since the reversal, as shares of the range: a gap or break-away of 0.5 to 12 degrees in
 # 120 shows between the first and the last.
 TRAVEL_KNOTS = (0.0, 0.004, 0.008, 0.015, 0.022, 0.03, 0.04, 0.055, 0.075, 0.1, 0.15)
-# A ridge far below one sample's weight keeps hats that no sample touches from making the equations singular.
+# Far below one sample's weight.
 RIDGE = 1e-6
 
 
@@ -39,8 +39,8 @@ class NoiseFloor:
         Over all samples of the comparison, reversal zones included.
     low, high : float
         What the saturated model leaves where it was fitted, and on what it has not seen, over the same samples.
-    moving_rms : float
-        Away from the reversal zones.
+    moving_rms, zone_rms : float
+        Away from the reversal zones, and inside them.
     unit : str
     method : str
     """
@@ -49,6 +49,7 @@ class NoiseFloor:
     low: float
     high: float
     moving_rms: float
+    zone_rms: float
     unit: str
     method: str
 
@@ -61,6 +62,7 @@ class NoiseFloor:
             "unit": self.unit,
             "method": self.method,
             "moving_rms": self.moving_rms,
+            "zone_rms": self.zone_rms,
         }
 
 
@@ -125,22 +127,23 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
             grams.append(a.T @ a)
             owners.append(s.run)
             counts.append(len(a))
-    blocks = Blocks(np.array(grams), np.array(owners), np.array(counts))
-    ridge = RIDGE * np.eye(blocks.gram.shape[1])
+    # A ridge keeps hats that no sample touches from making the equations singular; spread over the strokes, it is in
+    # every sum that is solved.
+    ridge = RIDGE * np.eye(grams[0].shape[0]) / len(grams)
     ridge[-1, -1] = 0.0
-    share = Blocks(blocks.gram + ridge, blocks.run, blocks.samples)
+    blocks = Blocks(np.array(grams) + ridge, np.inf, np.array(owners), np.array(counts))
     samples = max(int(blocks.samples.sum()), 1)
-    total = share.gram.sum(axis=0)
-    inside = float(loss(blocks.gram.sum(axis=0), solve(total))) / samples
-    folds = Folds.of(share)
+    fitted = blocks.solve()
+    inside = float(loss(blocks.gram, fitted).sum()) / samples
+    folds = Folds.of(blocks)
     unseen = inside
     if folds.count > 1:
-        losses, _ = held_out(share, folds)
+        losses, _ = held_out(blocks, folds)
         # A hat that only one run visits has no prediction there: such strokes say nothing about the noise. The median
         # over strokes, scaled to a mean by the training's own ratio, is deaf to them.
         per_stroke = losses / np.maximum(blocks.samples, 1)
         seen = blocks.samples > 0
-        trained = np.array([loss(g, solve(total)) for g in blocks.gram[seen]]) / blocks.samples[seen]
+        trained = loss(blocks.gram[seen], fitted) / blocks.samples[seen]
         unseen = max(inside, inside * float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300))))
     moving = np.sqrt((inside + unseen) / 2.0)
     return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit)
@@ -149,14 +152,15 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
 def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: float, unit: str) -> NoiseFloor:
     """Add what the uncertain starts of the strokes leave in the reversal zones."""
     level = friction_level(runs)
-    squares, samples = 0.0, 0
+    squares, samples, zone_samples = 0.0, 0, 0
     for r in runs:
-        shift = r.recording.reversal_shift([("coulomb", [0.5 * r.recording.resolution])], 0.5, 0.5)
+        shift = r.recording.start_shift([("coulomb", [0.5 * r.recording.resolution])])
         for s in r.strokes:
             part = slice(s.first, s.last)
             keep = r.usable[part]
             squares += float(np.sum((shift[part][keep] * level * s.onset_uncertainty_s) ** 2))
             samples += int(keep.sum())
+            zone_samples += int((keep & r.zone[part]).sum())
     start = squares / max(samples, 1)
     rms, low_all, high_all = (float(np.sqrt(v**2 + start)) for v in (moving, low, high))
     return NoiseFloor(
@@ -164,6 +168,7 @@ def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: f
         low_all,
         high_all,
         moving,
+        float(np.sqrt(moving**2 + squares / max(zone_samples, 1))),
         unit,
         "saturated model of the state, between what it leaves where it was fitted (low) and where it was not (high); "
         "in the reversal zones plus the uncertain instant of the start",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .equations import Blocks, loss, solve
+from .equations import Blocks, loss
 
 # With a single run its strokes are dealt into this many folds of neighbouring pairs (one stroke each way), so that
 # every fold sees both directions.
@@ -47,13 +47,11 @@ def held_out(blocks: Blocks, folds: Folds) -> tuple[np.ndarray, np.ndarray]:
     training : ndarray, shape (folds,)
         Sum of squares left in the strokes each fold was trained on: what inner parameters are chosen by.
     """
-    total = blocks.gram.sum(axis=0)
     losses = np.zeros(len(blocks.gram))
     training = np.zeros(folds.count)
     for k in range(folds.count):
         inside = folds.of_stroke == k
-        rest = total - blocks.gram[inside].sum(axis=0)
-        coefficients = solve(rest)
-        training[k] = loss(rest, coefficients)
+        coefficients = blocks.solve(~inside)
+        training[k] = loss(blocks.gram[~inside], coefficients).sum()
         losses[inside] = loss(blocks.gram[inside], coefficients)
     return losses, training

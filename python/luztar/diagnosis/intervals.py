@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..model import card
-from .equations import Blocks, blocks, solve
+from .equations import Blocks, blocks
 from .jacobian import continuous, jacobian
 from .profile import Problem, State, owners
 
@@ -69,7 +69,7 @@ def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
     varied = continuous(problem, fitted, sharpness=True)
     made = jacobian(problem, fitted, varied)
     parts = blocks(problem.runs, made, problem.weights)
-    full = solve(parts.gram.sum(axis=0))
+    full = parts.solve()
     covariance, degrees = jackknife(parts, full)
     collinear = _collinear(parts.gram.sum(axis=0))
     quantile = student(degrees)
@@ -122,11 +122,10 @@ def student(degrees: int) -> float:
 def jackknife(parts: Blocks, full: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the covariance of coefficients by leaving out one stroke at a time, and its degrees of freedom."""
     kept = np.flatnonzero(parts.samples > 0)
-    total = parts.gram.sum(axis=0)
     count = kept.size
     if count < 2:
         return np.full((full.size, full.size), np.inf), 1
-    changes = np.array([solve(total - parts.gram[j]) - full for j in kept])
+    changes = np.array([parts.solve(kept[kept != j]) - full for j in kept])
     return (count - 1) / count * changes.T @ changes, count - 1
 
 

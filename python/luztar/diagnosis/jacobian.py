@@ -60,10 +60,8 @@ def jacobian(problem: Problem, fitted: State, varied: Sequence[Inner]) -> Column
             sides.append([_model(m, fitted.coefficients) for m in moved.made.matrix])
         for k, (up, down) in enumerate(zip(*sides, strict=True)):
             derivative[k].append((up - down) / (2.0 * v.step))
-    matrix = tuple(
-        np.column_stack([m[:, :-1], *d, m[:, -1]]) for m, d in zip(fitted.made.matrix, derivative, strict=True)
-    )
-    return Columns(fitted.terms, matrix, fitted.made.shift)
+    more = [np.array(d).T.reshape(m.shape[0], -1) for d, m in zip(derivative, fitted.made.matrix, strict=True)]
+    return fitted.made.having(more)
 
 
 def _model(matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model import Model, card
-from .equations import Blocks, Columns, Weights, blocks, columns, loss, shifts, solve
+from .equations import Blocks, Columns, Weights, blocks, columns, loss
 from .prepare import Prepared
 from .terms import Terms, grid, least_travel, shapes_contact
 
@@ -53,19 +53,14 @@ class State:
     blocks: Blocks
 
     @functools.cached_property
-    def gram(self) -> np.ndarray:
-        """The summed normal equations."""
-        return self.blocks.gram.sum(axis=0)
-
-    @functools.cached_property
     def coefficients(self) -> np.ndarray:
-        """The coefficients with the least sum of squares."""
-        return solve(self.gram)
+        """The coefficients with the least sum of squares; the last is the common shift of the starts."""
+        return self.blocks.solve()
 
     @functools.cached_property
     def loss(self) -> float:
         """The least sum of squares."""
-        return float(loss(self.gram, self.coefficients))
+        return float(loss(self.blocks.gram, self.coefficients).sum())
 
 
 def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
@@ -75,9 +70,8 @@ def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
 
 def state(problem: Problem, terms: Terms, like: State | None = None, changed: str | None = None) -> State:
     """Build columns and blocks; with ``like`` and ``changed`` only the columns of one effect are made anew."""
-    band = problem.model.band_hz
     if like is None or changed is None or shapes_contact(changed) or like.terms.effects != terms.effects:
-        made = _known_removed(problem, terms, columns(problem.runs, terms, band))
+        made = _known_removed(problem, terms, columns(problem.runs, terms))
     else:
         made = _replaced(problem, terms, like.made, changed)
     return State(terms, made, blocks(problem.runs, made, problem.weights))
@@ -95,8 +89,8 @@ def _known_removed(problem: Problem, terms: Terms, made: Columns) -> Columns:
     matrix = []
     for m in made.matrix:
         known = sum(problem.fixed[o] * m[:, i] for i, o in enumerate(all_owners) if o in problem.fixed)
-        matrix.append(np.column_stack([m[:, free], m[:, -1] - known]))
-    return Columns(terms, tuple(matrix), made.shift)
+        matrix.append(np.column_stack([m[:, free], m[:, -2], m[:, -1] - known]))
+    return Columns(terms, tuple(matrix))
 
 
 def _replaced(problem: Problem, terms: Terms, made: Columns, changed: str) -> Columns:
@@ -108,7 +102,7 @@ def _replaced(problem: Problem, terms: Terms, made: Columns, changed: str) -> Co
         m = m.copy()
         m[:, places] = r.recording.columns(terms.pairs(), [index]).T
         matrix.append(m)
-    return Columns(terms, tuple(matrix), made.shift)
+    return Columns(terms, tuple(matrix))
 
 
 def with_effect(problem: Problem, base: State, name: str, inner: tuple[float, ...]) -> State:
@@ -117,11 +111,8 @@ def with_effect(problem: Problem, base: State, name: str, inner: tuple[float, ..
     if shapes_contact(name):
         return state(problem, terms)
     index = terms.effects.index(name)
-    matrix = []
-    for r, m in zip(problem.runs, base.made.matrix, strict=True):
-        c = r.recording.columns(terms.pairs(), [index]).T
-        matrix.append(np.column_stack([m[:, :-1], c, m[:, -1]]))
-    made = Columns(terms, tuple(matrix), base.made.shift)
+    more = [r.recording.columns(terms.pairs(), [index]).T for r in problem.runs]
+    made = Columns(terms, base.made.having(more).matrix)
     return State(terms, made, blocks(problem.runs, made, problem.weights))
 
 

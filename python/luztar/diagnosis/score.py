@@ -10,15 +10,15 @@ right ones: naming is by held-out error after refitting (see ``candidates``).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from .chance import p_values, signs, studentised
+from .equations import Weights
 from .floor import hats, travel_since_reversal
 from .prepare import Prepared
-from .terms import least_delay_s
 
 # Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
 POSITION_CELLS = 12
@@ -98,8 +98,9 @@ def detect(
     runs: Sequence[Prepared],
     model_columns: Sequence[np.ndarray],
     candidates: Sequence[Feature],
-    shift: Sequence[np.ndarray],
-    level: float,
+    weights: Weights,
+    start_shift: float,
+    start_bound: float,
 ) -> Detection:
     """Test whether something is missing from a model.
 
@@ -107,17 +108,17 @@ def detect(
     ----------
     runs : sequence of Prepared
     model_columns : sequence of ndarray, shape (n, p + 1)
-        The fitted model's columns and derivatives by its inner parameters, the measurement last.
+        The fitted model's columns and derivatives by its inner parameters, the shift of the starts, the measurement.
     candidates : sequence of Feature
         What each candidate would add; several features may carry the same name.
-    shift : sequence of ndarray, shape (n,)
-        What a shift of the reversals adds, per second and unit of friction level.
-    level : float
-        The friction level.
+    weights : Weights
+        What each stroke's own shift of its start is weighed against.
+    start_shift, start_bound : float
+        The fitted coefficient of the common shift of the starts (the last column) and the most it may be.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
     features = [*candidates, *cells(runs)]
-    scores = _scores(runs, model_columns, features, shift, level)
+    scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
     live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
     flips = signs(len(strokes))
     lack = {"state", "time", "reversal"}
@@ -157,8 +158,9 @@ def _scores(
     runs: Sequence[Prepared],
     model_columns: Sequence[np.ndarray],
     features: Sequence[Feature],
-    shift: Sequence[np.ndarray],
-    level: float,
+    weights: Weights,
+    start_shift: float,
+    start_bound: float,
 ) -> list[np.ndarray]:
     """Return the scores of every feature, each of shape (strokes, q)."""
     out: list[np.ndarray] = [np.empty(0)] * len(features)
@@ -167,20 +169,21 @@ def _scores(
         if not chosen:
             continue
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
-        table = np.concatenate([m[k] for m, k in zip(model_columns, keep, strict=True)])
+        tables = [m[k] for m, k in zip(model_columns, keep, strict=True)]
+        owners = [_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)]
+        whiten = [_whitener(r, t[:, -2], o, n, weights) for r, t, o, (_, n) in zip(runs, tables, owners, _offsets(runs), strict=True)]
+        table = np.concatenate([w(t) for w, t in zip(whiten, tables, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
-        if inside:
-            late = np.concatenate([z[k] for z, k in zip(shift, keep, strict=True)])[:, None]
-            # All starts may be seen a little late or early together; that is the sensor's, not a missing effect.
-            common = np.linalg.lstsq(np.hstack([basis, late]), response, rcond=None)[0][-1]
-            if abs(common) <= least_delay_s(runs) * level:
-                basis = np.hstack([basis, late])
+        # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor
+        # leaves open; beyond, it is taken off only as far as that.
+        if abs(start_shift) >= 0.999 * start_bound:
+            basis, response = basis[:, :-1], response - np.copysign(start_bound, start_shift) * basis[:, -1]
         q, _ = np.linalg.qr(_scaled(basis))
         residual = response - q @ (q.T @ response)
-        owner = np.concatenate([_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)])
+        owner = np.concatenate(owners)
         count = sum(len(r.strokes) for r in runs)
         for i in chosen:
-            z = np.concatenate([c[k] for c, k in zip(features[i].columns, keep, strict=True)])
+            z = np.concatenate([w(c[k]) for w, c, k in zip(whiten, features[i].columns, keep, strict=True)])
             z = z - q @ (q.T @ z)
             product = z * residual[:, None]
             scores = np.zeros((count, z.shape[1]))
@@ -190,6 +193,31 @@ def _scores(
             scores[:, np.linalg.norm(z, axis=0) < 1e-9 * np.sqrt(len(z))] = 0.0
             out[i] = scores
     return out
+
+
+def _whitener(
+    r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, weights: Weights
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the map that gives the uncertain start of each stroke the weight it has in the fit.
+
+    The square root of ``I - z z' / (z'z + ridge)`` for each stroke's column ``z``.
+    """
+    parts = []
+    for i, stroke in enumerate(r.strokes):
+        inside = np.flatnonzero(owner == offset + i)
+        z = shift[inside]
+        length = float(z @ z)
+        if length > 0.0:
+            ridge = weights.ridge(r.step_s, stroke.onset_uncertainty_s)
+            parts.append((inside, z, (1.0 - np.sqrt(ridge / (length + ridge))) / length))
+
+    def apply(values: np.ndarray) -> np.ndarray:
+        out = values.copy()
+        for inside, z, share in parts:
+            out[inside] -= share * np.outer(z, z @ values[inside])
+        return out
+
+    return apply
 
 
 def _scaled(basis: np.ndarray) -> np.ndarray:

@@ -80,11 +80,6 @@ def least_travel(runs: Sequence[Prepared]) -> float:
     return min(SHOWN_STEPS * step, 0.005 * reach)
 
 
-def least_delay_s(runs: Sequence[Prepared]) -> float:
-    """Return the smallest delay that can be told from the uncertain instants of the starts."""
-    return float(np.mean([s.onset_uncertainty_s for r in runs for s in r.strokes]))
-
-
 def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
     """Return the values at which an inner parameter is searched, from what the runs can show."""
     word, number = parameter.grid if parameter.grid else ("", 0.0)
@@ -100,7 +95,7 @@ def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
         case "travel":
             return np.geomspace(least_travel(runs), number * reach, points)
         case "resolution":
-            return step * np.geomspace(0.25, 2.0, points)
+            return step * np.geomspace(0.03, 2.0, points)
         case "place":
             return np.linspace(low, high, points + 2)[1:-1]
         case "width":

@@ -81,8 +81,10 @@ def regimes(fitted: Fit, residual: Sequence[np.ndarray] | None = None) -> tuple[
     runs = fitted.runs
     error = _stack(runs, residual if residual is not None else fitted.residual) ** 2
     floor = fitted.noise_floor.moving_rms
-    reversal_floor = fitted.noise_floor.rms
-    excess_total = float(error.sum() - floor**2 * error.size)
+    reversal_floor = fitted.noise_floor.zone_rms
+    zone = _stack(runs, [r.zone for r in runs])
+    expected = np.where(zone, reversal_floor**2, floor**2)
+    excess_total = float(error.sum() - expected.sum())
     if excess_total <= 0.0 or not error.size:
         return ()
     found = []
@@ -90,9 +92,8 @@ def regimes(fitted: Fit, residual: Sequence[np.ndarray] | None = None) -> tuple[
         count = int(mask.sum())
         if count < 5:
             continue
-        share = float(error[mask].sum() - floor**2 * count) / excess_total
-        rms = math.sqrt(float(error[mask].mean()))
-        ratio = rms / max(reversal_floor if name in ("after_reversal", "at_rest") else floor, np.finfo(float).tiny)
+        share = float(error[mask].sum() - expected[mask].sum()) / excess_total
+        ratio = math.sqrt(float(error[mask].sum()) / max(float(expected[mask].sum()), np.finfo(float).tiny))
         if share > WORTH_SHARE and share > WORTH_OVER_SAMPLES * count / error.size and ratio > 1.1:
             percent = f"{100 * min(share, 1.0):.0f} % of the excess error lies {text}, where the error is"
             found.append(Regime(name, min(share, 1.0), ratio, f"{percent} {ratio:.1f} times the noise floor."))

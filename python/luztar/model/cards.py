@@ -131,10 +131,11 @@ def axis_key(key: str) -> str:
 def _all(structure: str) -> dict[str, Card]:
     found = {}
     for raw in _core.effect_cards():
-        parameters = tuple(Parameter(**p) for p in raw.pop("parameters"))
+        parameters = tuple(Parameter(**p) for p in raw["parameters"])
         if structure == "axis":
             parameters = tuple(replace(p, key=axis_key(p.key)) for p in parameters)
-        found[raw["name"]] = Card(parameters=parameters, **raw)
+        fields: dict[str, Any] = {**raw, "parameters": parameters}
+        found[raw["name"]] = Card(**fields)
     return found
 
 

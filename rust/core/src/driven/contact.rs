@@ -42,7 +42,7 @@ pub fn friction_state(contact: &Contact, position: &[f64]) -> Vec<f64> {
 /// Lets a level of friction take effect as the contact slides: it approaches its value over the travel of the
 /// break-away and is held at rest, where nothing slides.
 ///
-/// This is what a bristle does whose bound changes while it is loaded (LuGre, Dahl): a level that rises as the motion
+/// This is what a bristle does whose bound changes while it is loaded (`LuGre`, Dahl): a level that rises as the motion
 /// stops reaches only what the last travel allowed, and the torque at rest is the one the motion ended with.
 pub fn hold_at_rest(level: &mut [f64], contact: &Contact, position: &[f64]) {
     let mut held = level.first().copied().unwrap_or(0.0);

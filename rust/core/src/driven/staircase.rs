@@ -63,25 +63,25 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
         }
     }
     // Before the first crossing and after the last the position rests in its step, but for the way in and out.
-    if let [first, second, ..] = crossings[..] {
-        if first.direction == second.direction {
-            approach(
-                &mut joined,
-                first,
-                START_OVER_NEXT * (second.time - first.time),
-                -1.0,
-            );
-        }
+    if let [first, second, ..] = crossings[..]
+        && first.direction == second.direction
+    {
+        approach(
+            &mut joined,
+            first,
+            START_OVER_NEXT * (second.time - first.time),
+            -1.0,
+        );
     }
-    if let [.., second, last] = crossings[..] {
-        if second.direction == last.direction {
-            approach(
-                &mut joined,
-                last,
-                START_OVER_NEXT * (last.time - second.time),
-                1.0,
-            );
-        }
+    if let [.., second, last] = crossings[..]
+        && second.direction == last.direction
+    {
+        approach(
+            &mut joined,
+            last,
+            START_OVER_NEXT * (last.time - second.time),
+            1.0,
+        );
     }
     joined
 }

@@ -16,7 +16,7 @@ impl Law for Coulomb {
         cause: "Seals, bearings, belt and gear mesh of the robot and the column.",
         check: "Loosen the two thumb screws of the motor by a quarter turn (TB 038 Annex I step 18) if the level is too high.",
         typical: "0.2 to 1.5 Nm",
-        source: "paper eq. (4); TB 038 section 2.2",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eq. (4); TB 038 section 2.2",
         parameters: &[
             Parameter {
                 key: "level_nm",

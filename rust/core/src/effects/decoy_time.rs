@@ -16,7 +16,7 @@ impl Law for DecoyTime {
         cause: "None: a ruler for what chance alone can explain.",
         check: "Nothing; if it wins, something outside the catalogue is missing.",
         typical: "none",
-        source: "",
+        source: "a random probe feature, after Stoppiglia et al. 2003, J. Machine Learning Research 3:1399",
         parameters: &[Parameter {
             key: "level_nm",
             symbol: "c",

@@ -16,7 +16,7 @@ impl Law for Delay {
         cause: "A filter in one channel only, bus latency, unsynchronised clocks.",
         check: "Record both channels on one clock with the same filter; ask for the logger's filter settings.",
         typical: "2 to 50 ms",
-        source: "",
+        source: "definition of a dead time; a causal 4-pole Butterworth low pass at f Hz is late by 2.61 / (2 pi f)",
         parameters: &[Parameter {
             key: "time_s",
             symbol: "tau",

@@ -16,7 +16,7 @@ impl Law for Drift {
         cause: "Load cell or amplifier warming up, a leaking sucker mount.",
         check: "Let the amplifier warm up for 20 minutes; zero again (TB 038 Annex I step 9) and compare the zero before and after.",
         typical: "0.001 to 0.02 Nm/s",
-        source: "",
+        source: "definition: a wandering zero, first order in time; the zero is TB 038 Annex I step 9",
         parameters: &[Parameter {
             key: "rate_nm_per_s",
             symbol: "rate",

@@ -16,7 +16,7 @@ impl Law for Freeplay {
         cause: "Backlash in the gear, worn joint, loose clamp of the robot on the wheel.",
         check: "Rock the wheel by hand about one angle; tighten the clamp of the robot (TB 038 Annex I step 2), check gear and joints.",
         typical: "0.5 to 6 degrees",
-        source: "paper eqs. (1) and (3); play operator",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eqs. (1) and (3); play operator",
         parameters: &[Parameter {
             key: "gap_rad",
             symbol: "g",

@@ -46,6 +46,7 @@ pub trait Law {
     fn contact(_inner: &[f64], _contact: &mut Contact) {}
 
     /// By how many seconds the sensor is late; most effects say nothing about it.
+    #[must_use]
     fn delay_s(_inner: &[f64]) -> f64 {
         0.0
     }

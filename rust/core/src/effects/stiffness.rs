@@ -16,7 +16,7 @@ impl Law for Stiffness {
         cause: "A cable or hose that winds up, a centring spring, the tyres.",
         check: "Route cables freely; lift the front axle or disconnect the column.",
         typical: "0.05 to 0.5 Nm/rad",
-        source: "paper eq. (3)",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eq. (3)",
         parameters: &[Parameter {
             key: "stiffness_nm_per_rad",
             symbol: "k",

@@ -16,7 +16,7 @@ impl Law for Viscous {
         cause: "Grease, oil, eddy currents in the motor.",
         check: "Warm the robot up; compare slow and fast strokes.",
         typical: "0.1 to 0.6 Nm per rad/s",
-        source: "paper eq. (4)",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eq. (4)",
         parameters: &[Parameter {
             key: "coefficient_nm_s_per_rad",
             symbol: "mu",
