@@ -108,7 +108,7 @@ class _Parameter(TypedDict):
     low: float
     high: float
     role: Literal["linear", "amplitude", "phase", "inner"]
-    grid: tuple[str, float] | None
+    grid: tuple[str, float, float] | None
 
 @type_check_only
 class _Card(TypedDict):
@@ -123,6 +123,9 @@ class _Card(TypedDict):
     source: str
     behind_gap: bool
     per_turn: bool
+    shapes_others: bool
+    becomes: str | None
+    channel: str | None
     needs: str | None
     parameters: list[_Parameter]
 
@@ -139,13 +142,14 @@ class Recording:
         position: NDArray[np.float64],
         *,
         sample_rate_hz: float,
-        band_hz: float | None,
+        band_hz: float,
         decimate: int | None,
         anti_alias: bool,
         already_filtered: bool,
         hysteresis: float,
         minimum_travel: float,
         turn_rad_per_unit: float,
+        load_n: NDArray[np.float64] | None,
     ) -> Recording: ...
     def __len__(self) -> int: ...
     @property
@@ -158,5 +162,5 @@ class Recording:
     def strokes(self) -> list[tuple[int, int, float, float]]: ...
     def measured(self, channel: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def state(self, model: _Terms) -> NDArray[np.float64]: ...
-    def reversal_shift(self, model: _Terms, before_s: float, after_s: float) -> NDArray[np.float64]: ...
+    def start_shift(self, model: _Terms) -> NDArray[np.float64]: ...
     def columns(self, model: _Terms, wanted: Sequence[int]) -> NDArray[np.float64]: ...

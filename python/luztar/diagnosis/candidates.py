@@ -16,7 +16,7 @@ from .fit import Fit
 from .profile import Problem, State, with_effect
 from .score import Feature
 from .search import Search
-from .terms import inner_grid, shapes_contact
+from .terms import inner_grid
 
 # A candidate within this many standard errors (paired by stroke) of the best is not told apart from it.
 SET_ERRORS = 2.0
@@ -59,6 +59,8 @@ def possible(fitted: Fit) -> list[Card]:
     found = []
     for c in cards(model.structure_name):
         if c.name in model.effects or (c.needs and c.needs not in model.effects):
+            continue
+        if c.channel and any(not r.has_load for r in fitted.runs):
             continue
         if c.per_turn and model.structure_name == "axis" and "pitch_m" not in model.known:
             continue
@@ -117,8 +119,8 @@ def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
 
 
 def _features(problem: Problem, base: State, tried: State, c: Card) -> list[Feature]:
-    if not shapes_contact(c.name):
-        more = tried.made.matrix[0].shape[1] - base.made.matrix[0].shape[1]
+    more = tried.made.matrix[0].shape[1] - base.made.matrix[0].shape[1]
+    if more:
         added = tuple(m[:, -2 - more : -2] for m in tried.made.matrix)
         features = [Feature(c.name, added)]
         # Inertia shows where the speed changes most.

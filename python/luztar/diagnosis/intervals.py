@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from ..model import card
+from ..model import Parameter, card
 from .equations import Blocks, blocks
+from .grids import is_geometric, is_sharpness, word
 from .jacobian import continuous, jacobian
 from .profile import Problem, State, owners
 
@@ -96,8 +97,8 @@ def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
                 out[key] = _given(model.known[key], p.unit)
                 continue
             at = next((k for k, v in enumerate(varied) if (v.effect, v.index) == (name, i)), None)
-            if at is None or (p.grid and p.grid[0] == "resolution"):
-                out[key] = Estimate(value, None, None, False, p.unit, _why_discrete(p.grid))
+            if at is None or is_sharpness(p):
+                out[key] = Estimate(value, None, None, False, p.unit, _why_none(p))
                 continue
             place = len(free) + at
             half = quantile * math.sqrt(covariance[place, place])
@@ -105,7 +106,7 @@ def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
             note = ""
             if not math.isfinite(half) or collinear[place] or half > 5.0 * abs(value):
                 note = "the data do not determine it"
-            elif p.grid and p.grid[0] in ("speed", "travel", "time") and low <= 0.0:
+            elif is_geometric(p) and low <= 0.0:
                 low = 0.0
                 note = "the data do not keep it away from zero"
             out[key] = Estimate(value, max(low, p.low), min(high, p.high), not note, p.unit, note)
@@ -150,10 +151,10 @@ def _estimate(value: float, half: float, unit: str, collinear: bool) -> Estimate
     return Estimate(value, value - half, value + half, not collinear, unit, note)
 
 
-def _why_discrete(how: tuple[str, float] | None) -> str:
-    if how and how[0] == "resolution":
+def _why_none(parameter: Parameter) -> str:
+    if is_sharpness(parameter):
         return "sharper than the position sensor can show"
-    return "chosen among a few values"
+    return "not fitted" if word(parameter) in ("slowest_speed", "waves_per_range") else "chosen among a few values"
 
 
 def _polar(

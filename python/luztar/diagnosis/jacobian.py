@@ -9,8 +9,8 @@ import numpy as np
 
 from ..model import card
 from .equations import Columns
+from .grids import is_continuous, is_geometric, is_sharpness, points
 from .profile import Problem, State, state
-from .terms import grid
 
 
 @dataclass(frozen=True)
@@ -31,19 +31,14 @@ def continuous(problem: Problem, fitted: State, sharpness: bool = False) -> list
     found = []
     for name in fitted.terms.effects:
         for i, p in enumerate(card(name, problem.model.structure_name).inner):
-            if f"{name}.{p.key}" in problem.model.known or p.grid is None:
-                continue
-            if p.grid[0] in ("shape", "count", "waves_per_range") or (p.grid[0] == "resolution" and not sharpness):
+            if f"{name}.{p.key}" in problem.model.known or not is_continuous(p) or (is_sharpness(p) and not sharpness):
                 continue
             # Presliding replaces the break-away of Coulomb friction, which then does nothing.
-            if name == "coulomb" and "presliding" in fitted.terms.effects:
+            if is_sharpness(p) and "presliding" in fitted.terms.effects:
                 continue
             value = fitted.terms.inner[name][i]
-            if p.grid[0] in ("speed", "travel", "time", "width", "resolution"):
-                step = 0.05 * value
-            else:
-                points = grid(p, problem.runs)
-                step = 0.2 * float(points[1] - points[0])
+            grid = points(p, problem.runs)
+            step = 0.05 * value if is_geometric(p) else 0.2 * float(grid[1] - grid[0])
             found.append(Inner(name, i, p.key, max(step, np.finfo(float).tiny)))
     return found
 

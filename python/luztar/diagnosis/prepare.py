@@ -74,6 +74,8 @@ class Prepared:
     step_s : float
         Seconds between kept samples.
     duration_s : float
+    has_load : bool
+        Whether the load was recorded.
     """
 
     name: str
@@ -88,6 +90,7 @@ class Prepared:
     strokes: tuple[Stroke, ...]
     step_s: float
     duration_s: float
+    has_load: bool
 
 
 def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:
@@ -111,6 +114,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
     run.require_even()
     motion = vector(f"{run.name}: {structure.motion}", run[structure.motion], minimum=16)
     effort = vector(f"{run.name}: {structure.effort}", run[structure.effort], minimum=16)
+    load = vector(f"{run.name}: load", run["load"]) if "load" in run else None
     rate = run.sample_rate_hz
     band = comparison_band_hz(model, rate)
     if not band < 0.45 * rate:
@@ -132,6 +136,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         hysteresis=structure.hysteresis(span),
         minimum_travel=structure.minimum_travel(span),
         turn_rad_per_unit=turn,
+        load_n=load,
     )
     position, speed, acceleration = recording.kept()
     every = recording.decimate
@@ -156,6 +161,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         strokes=strokes,
         step_s=step_s,
         duration_s=run.duration_s,
+        has_load=load is not None,
     )
 
 

@@ -10,18 +10,15 @@ import numpy as np
 
 from ..model import Model, card
 from .equations import Blocks, Columns, Weights, blocks, columns, loss
+from .grids import is_continuous, is_geometric, limits, points
 from .prepare import Prepared
-from .terms import Terms, grid, least_travel, shapes_contact
+from .terms import Terms
 
 # Rounds over all inner parameters, and the relative fall of the loss below which another round is not worth it.
 ROUNDS = 3
 WORTH = 1e-4
 # Width to which one parameter is located, as a share of its grid's spacing: far below its standard error.
 LOCATED = 0.02
-# Grids that are searched geometrically are refined in the logarithm.
-_GEOMETRIC = ("speed", "travel", "time", "width", "resolution")
-# Grids whose few values are taken as they are.
-_DISCRETE = ("count", "shape", "waves_per_range")
 
 
 @dataclass(frozen=True)
@@ -63,6 +60,10 @@ class State:
         return float(loss(self.blocks.gram, self.coefficients).sum())
 
 
+def _shapes_others(problem: Problem, name: str) -> bool:
+    return card(name, problem.model.structure_name).shapes_others
+
+
 def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
     """Return (effect, number of its column) for every column of the terms."""
     return [(name, i) for name in terms.effects for i in range(len(card(name, model.structure_name).linear))]
@@ -70,7 +71,7 @@ def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
 
 def state(problem: Problem, terms: Terms, like: State | None = None, changed: str | None = None) -> State:
     """Build columns and blocks; with ``like`` and ``changed`` only the columns of one effect are made anew."""
-    if like is None or changed is None or shapes_contact(changed) or like.terms.effects != terms.effects:
+    if like is None or changed is None or _shapes_others(problem, changed) or like.terms.effects != terms.effects:
         made = _known_removed(problem, terms, columns(problem.runs, terms))
     else:
         made = _replaced(problem, terms, like.made, changed)
@@ -108,7 +109,7 @@ def _replaced(problem: Problem, terms: Terms, made: Columns, changed: str) -> Co
 def with_effect(problem: Problem, base: State, name: str, inner: tuple[float, ...]) -> State:
     """Return the state with one effect more."""
     terms = base.terms.having(name, inner)
-    if shapes_contact(name):
+    if _shapes_others(problem, name):
         return state(problem, terms)
     index = terms.effects.index(name)
     more = [r.recording.columns(terms.pairs(), [index]).T for r in problem.runs]
@@ -168,7 +169,8 @@ def _along(problem: Problem, best: State, since: Terms, visit: Callable[[State],
     def at(share: float) -> float:
         inner = dict(best.terms.inner)
         for n in moved:
-            bounds = [limits(problem, n, i) for i in range(len(inner[n]))]
+            inside = card(n, problem.model.structure_name).inner
+            bounds = [limits(p, problem.runs) for p in inside]
             inner[n] = tuple(
                 float(np.clip(a + share * (b - a), *limit))
                 for a, b, limit in zip(since.inner[n], inner[n], bounds, strict=True)
@@ -184,32 +186,12 @@ def _along(problem: Problem, best: State, since: Terms, visit: Callable[[State],
     return min(tried, key=lambda s: s.loss)
 
 
-def limits(problem: Problem, name: str, i: int) -> tuple[float, float]:
-    """Return the range in which an inner parameter is looked for."""
-    p = card(name, problem.model.structure_name).inner[i]
-    word = p.grid[0] if p.grid else ""
-    if f"{name}.{p.key}" in problem.model.known or word in _DISCRETE:
-        return -np.inf, np.inf
-    if word == "travel":
-        return least_travel(problem.runs), p.high
-    if word == "resolution":
-        # What the sensor shows of a sharp break-away; a blunter one is presliding and has to be named as such.
-        points = grid(p, problem.runs)
-        return float(points[0]), float(points[-1])
-    if word in _GEOMETRIC:
-        # Beyond four times the grid the law is a simpler one (a constant, or nothing).
-        points = grid(p, problem.runs)
-        return float(points[0]) / 4.0, min(p.high, 4.0 * float(points[-1]))
-    return p.low, p.high
-
-
 def _refine_one(
     problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None
 ) -> State:
     p = card(name, problem.model.structure_name).inner[i]
-    word = p.grid[0] if p.grid else ""
-    points = grid(p, problem.runs)
-    low, high = limits(problem, name, i)
+    grid = points(p, problem.runs)
+    low, high = limits(p, problem.runs)
     tried: dict[float, State] = {best.terms.inner[name][i]: best}
 
     def at(value: float) -> float:
@@ -222,12 +204,12 @@ def _refine_one(
                 visit(tried[value])
         return tried[value].loss
 
-    if word in _DISCRETE:
-        for value in points:
+    if not is_continuous(p):
+        for value in grid:
             at(float(value))
-    elif len(points) > 1:
-        to, back = (np.log, np.exp) if word in _GEOMETRIC else (lambda v: v, lambda v: v)
-        spacing = float(to(points[1]) - to(points[0]))
+    elif len(grid) > 1:
+        to, back = (np.log, np.exp) if is_geometric(p) else (lambda v: v, lambda v: v)
+        spacing = float(to(grid[1]) - to(grid[0]))
         centre = float(to(best.terms.inner[name][i]))
         golden(lambda v: at(float(back(v))), centre, spacing)
     return min(tried.values(), key=lambda s: s.loss)

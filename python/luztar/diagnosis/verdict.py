@@ -9,8 +9,8 @@ from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, equival
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
 from .fit import Fit
+from .grids import points, word
 from .score import Detection
-from .terms import least_travel
 
 # One level over all tests of a look.
 ALPHA = 0.05
@@ -59,16 +59,23 @@ def folded(fitted: Fit, found: Sequence[Candidate]) -> dict[str, str]:
     out = {}
     for c in found:
         state = c.search.best
-        if state is None:
+        simpler = c.card.becomes
+        if state is None or not simpler:
             continue
-        inner = state.terms.inner.get(c.name, ())
-        # Half above the smallest value: the search stops there, its least lies at or below it.
-        if c.name == "presliding" and inner[0] < 1.5 * least_travel(fitted.runs):
-            out[c.name] = "coulomb"
-        elif c.name == "freeplay" and inner[0] < 1.5 * least_travel(fitted.runs):
-            out[c.name] = "coulomb"
-        elif c.name == "delay" and inner[0] < start_uncertainty_s(fitted.runs):
-            out[c.name] = "coulomb"
+        inside = c.card.inner
+        if not inside:
+            # The same while moving, whatever its value.
+            if simpler in fitted.model.effects or any(o.name == simpler for o in found):
+                out[c.name] = simpler
+            continue
+        value = state.terms.inner[c.name][0]
+        if word(inside[0]) == "delay":
+            least = start_uncertainty_s(fitted.runs)
+        else:
+            # Half above the smallest value: the search stops there, its least lies at or below it.
+            least = 1.5 * float(points(inside[0], fitted.runs)[0])
+        if value < least:
+            out[c.name] = simpler
     return out
 
 

@@ -29,7 +29,7 @@ class Parameter:
     role : str
         ``linear``, ``amplitude``, ``phase`` or ``inner``.
     grid : tuple or None
-        How an inner parameter is searched: a word and the number that goes with it.
+        How an inner parameter is searched: a word and the numbers that go with it.
     """
 
     key: str
@@ -38,7 +38,7 @@ class Parameter:
     low: float
     high: float
     role: str
-    grid: tuple[str, float] | None
+    grid: tuple[str, float, float] | None
 
     @property
     def unit(self) -> str:
@@ -70,6 +70,9 @@ class Card:
     source: str
     behind_gap: bool
     per_turn: bool
+    shapes_others: bool
+    becomes: str | None
+    channel: str | None
     needs: str | None
     parameters: tuple[Parameter, ...]
 

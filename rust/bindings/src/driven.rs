@@ -23,7 +23,7 @@ pub struct Recording(Core);
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, anti_alias, already_filtered, hysteresis, minimum_travel, turn_rad_per_unit))]
+    #[pyo3(signature = (position, *, sample_rate_hz, band_hz, decimate, anti_alias, already_filtered, hysteresis, minimum_travel, turn_rad_per_unit, load_n))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -36,8 +36,13 @@ impl Recording {
         hysteresis: f64,
         minimum_travel: f64,
         turn_rad_per_unit: f64,
+        load_n: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Self> {
         let x = position.as_slice()?;
+        let load = load_n
+            .as_ref()
+            .map(PyReadonlyArray1::as_slice)
+            .transpose()?;
         let band = Band {
             upper_hz: band_hz,
             decimate,
@@ -50,7 +55,7 @@ impl Recording {
             turn_rad_per_unit,
         };
         let core = py
-            .detach(|| Core::new(x, sample_rate_hz, band, travel))
+            .detach(|| Core::new(x, sample_rate_hz, band, travel, load))
             .map_err(CoreError)?;
         Ok(Self(core))
     }

@@ -111,6 +111,13 @@ impl Recording {
                     known: "give the pitch".into(),
                 });
             }
+            if effect.card.channel.is_some() && self.load_n.is_none() {
+                return Err(Error::Unknown {
+                    what: "channel of",
+                    name: term.effect.clone(),
+                    known: "record the load".into(),
+                });
+            }
             let mut raw = self.basis(effect, &term.inner);
             if effect.card.kind == Kind::FrictionLevel {
                 let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
@@ -173,6 +180,10 @@ impl Recording {
                 acceleration: self.acceleration[i],
                 turn_rad: self.position[i] * self.turn_rad_per_unit,
                 time_s: i as f64 / self.sample_rate_hz,
+                rest_s: self.phases.rest_s[i],
+                travelled: self.phases.travelled[i],
+                direction: self.phases.direction[i],
+                load_n: self.load_n.as_ref().map_or(0.0, |load| load[i]),
             };
             (effect.basis)(&motion, inner, &mut out);
             for (column, value) in columns.iter_mut().zip(&out) {

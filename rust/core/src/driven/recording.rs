@@ -3,7 +3,7 @@
 use super::kinematics::derivative;
 use super::resolution::{Resolution, span};
 use super::staircase::join_steps;
-use super::strokes::{Stroke, strokes};
+use super::strokes::{Phases, Stroke, strokes};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
 use crate::signal::{AntiAlias, CutoffAt, Edges, LowPass, Passes, ZeroPhase};
@@ -55,6 +55,8 @@ pub struct Recording {
     pub(super) seen: Vec<f64>,
     pub(super) decimate: usize,
     pub(super) turn_rad_per_unit: f64,
+    pub(super) load_n: Option<Vec<f64>>,
+    pub(super) phases: Phases,
     low_pass: ZeroPhase,
     already_filtered: bool,
     resolution: Resolution,
@@ -71,6 +73,7 @@ impl Recording {
         sample_rate_hz: f64,
         band: Band,
         travel: Travel,
+        load_n: Option<&[f64]>,
     ) -> Result<Self, Error> {
         require_positive("sample_rate_hz", sample_rate_hz)?;
         require_finite("position", position)?;
@@ -117,6 +120,11 @@ impl Recording {
             travel.hysteresis,
             travel.minimum,
         );
+        if let Some(load) = load_n {
+            crate::error::require_same_length("load", load, "position", position.len())?;
+            require_finite("load", load)?;
+        }
+        let phases = Phases::of(&seen, &strokes, resolution.step, sample_rate_hz);
         let speed = derivative(&smooth, sample_rate_hz);
         let acceleration = derivative(&speed, sample_rate_hz);
         Ok(Self {
@@ -127,6 +135,8 @@ impl Recording {
             seen,
             decimate: decimate.max(1),
             turn_rad_per_unit: travel.turn_rad_per_unit,
+            load_n: load_n.map(<[f64]>::to_vec),
+            phases,
             low_pass,
             already_filtered: band.already_filtered,
             resolution,

@@ -13,6 +13,51 @@ pub struct Stroke {
     pub onset_uncertainty_s: f64,
 }
 
+/// What a stroke knows of itself at every sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phases {
+    /// Seconds of rest before the present stroke; 0 before the first.
+    pub rest_s: Vec<f64>,
+    /// Travel since the present stroke started, as a share of the range.
+    pub travelled: Vec<f64>,
+    /// Direction of the present stroke; 0 before the first.
+    pub direction: Vec<f64>,
+}
+
+impl Phases {
+    /// Reads the phases off the position as the contact follows it.
+    pub fn of(seen: &[f64], strokes: &[Stroke], step: f64, sample_rate_hz: f64) -> Self {
+        let n = seen.len();
+        let (low, high) = seen
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(*x), h.max(*x))
+            });
+        let range = if high > low { high - low } else { 1.0 };
+        let mut phases = Self {
+            rest_s: vec![0.0; n],
+            travelled: vec![0.0; n],
+            direction: vec![0.0; n],
+        };
+        for (k, stroke) in strokes.iter().enumerate() {
+            let start = seen[stroke.onset];
+            // Within a step of where it starts, the position has been at rest.
+            let rest = seen[..stroke.onset]
+                .iter()
+                .rev()
+                .take_while(|x| (**x - start).abs() <= step)
+                .count();
+            let end = strokes.get(k + 1).map_or(n, |next| next.onset);
+            for i in stroke.onset..end {
+                phases.rest_s[i] = rest as f64 / sample_rate_hz;
+                phases.travelled[i] = (seen[i] - start).abs() / range;
+                phases.direction[i] = stroke.direction;
+            }
+        }
+        phases
+    }
+}
+
 /// The turning points of `position`: extremes that are followed by a return of more than `hysteresis`.
 fn turns(position: &[f64], hysteresis: f64) -> Vec<usize> {
     let (mut high, mut low) = (0, 0);

@@ -46,10 +46,21 @@ pub enum Grid {
     Resolution,
     /// Even, inside the range of motion.
     Place,
+    /// Even, shares of the largest position on either side.
+    Reach {
+        /// The smallest share.
+        low: f64,
+        /// The largest share.
+        high: f64,
+    },
+    /// Not searched: the slowest speed that the record resolves.
+    SlowestSpeed,
     /// Geometric, a share of the range of motion.
     Width,
     /// Geometric, between a few seconds and the longest record.
     Time,
+    /// Geometric, around the rests between the strokes.
+    Rest,
     /// Even, between the bounds, the bounds being seconds of delay.
     Delay,
     /// The whole numbers between the bounds.
@@ -69,8 +80,11 @@ impl Grid {
             Self::Travel { .. } => "travel",
             Self::Resolution => "resolution",
             Self::Place => "place",
+            Self::Reach { .. } => "reach",
+            Self::SlowestSpeed => "slowest_speed",
             Self::Width => "width",
             Self::Time => "time",
+            Self::Rest => "rest",
             Self::Delay => "delay",
             Self::Count => "count",
             Self::Shape => "shape",
@@ -78,13 +92,14 @@ impl Grid {
         }
     }
 
-    /// The number that goes with the word, 0 where there is none.
+    /// The numbers that go with the word, 0 where there are none.
     #[must_use]
-    pub const fn value(self) -> f64 {
+    pub const fn values(self) -> (f64, f64) {
         match self {
-            Self::Travel { share_of_range } => share_of_range,
-            Self::WavesPerRange(waves) => waves,
-            _ => 0.0,
+            Self::Travel { share_of_range } => (0.0, share_of_range),
+            Self::Reach { low, high } => (low, high),
+            Self::WavesPerRange(waves) => (waves, waves),
+            _ => (0.0, 0.0),
         }
     }
 }
@@ -144,8 +159,12 @@ pub struct Card {
     pub source: &'static str,
     /// Its parameters: linear ones in the order of the basis, then inner ones.
     pub parameters: &'static [Parameter],
+    /// The simpler effect it becomes at the low end of its first inner parameter, if any.
+    pub becomes: Option<&'static str>,
     /// Whether the law counts turns, so that an axis needs its pitch.
     pub per_turn: bool,
+    /// Which channel beside motion and effort the law looks at, if any.
+    pub channel: Option<&'static str>,
     /// Which effect must be in the model for this one to make sense, if any.
     pub needs: Option<&'static str>,
 }

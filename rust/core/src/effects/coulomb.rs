@@ -35,10 +35,13 @@ impl Law for Coulomb {
                 high: f64::INFINITY,
             },
         ],
+        becomes: None,
         per_turn: false,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 1;
+    const SHAPES_OTHERS: bool = true;
 
     fn basis<L: Lane>(_motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
         out[0] = L::splat(1.0);

@@ -35,7 +35,9 @@ impl Law for DecoyAngle {
                 high: f64::INFINITY,
             },
         ],
+        becomes: None,
         per_turn: false,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 1;

@@ -25,7 +25,9 @@ impl Law for DecoyTime {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         }],
+        becomes: None,
         per_turn: false,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 1;

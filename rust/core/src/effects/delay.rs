@@ -25,10 +25,13 @@ impl Law for Delay {
             low: 0.0,
             high: 0.1,
         }],
+        becomes: Some("coulomb"),
         per_turn: false,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 0;
+    const SHAPES_OTHERS: bool = true;
 
     fn basis<L: Lane>(_motion: &Motion<L>, _inner: &[f64], _out: &mut [L]) {}
 

@@ -16,6 +16,14 @@ pub struct Motion<L> {
     pub turn_rad: L,
     /// Seconds since the start of the file.
     pub time_s: L,
+    /// Seconds of rest before the present stroke.
+    pub rest_s: L,
+    /// Travel since the present stroke started, as a share of the range of motion.
+    pub travelled: L,
+    /// +1 while the position increases, -1 while it decreases, held at rest.
+    pub direction: L,
+    /// Load on the contact, N; 0 where the record has no such channel.
+    pub load_n: L,
 }
 
 /// The one friction state of a contact, as the effects of a model shape it.
@@ -38,6 +46,8 @@ pub trait Law {
     const CARD: Card;
     /// How many columns the basis has.
     const COLUMNS: usize;
+    /// Whether the law changes the columns of other effects, through the contact or the delay.
+    const SHAPES_OTHERS: bool = false;
 
     /// Writes the `COLUMNS` basis values for one state of motion.
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]);
@@ -59,6 +69,8 @@ pub struct Effect {
     pub card: &'static Card,
     /// How many columns the basis has.
     pub columns: usize,
+    /// See [`Law::SHAPES_OTHERS`].
+    pub shapes_others: bool,
     /// The basis for one sample.
     pub basis: fn(&Motion<f64>, &[f64], &mut [f64]),
     /// See [`Law::contact`].
@@ -74,6 +86,7 @@ impl Effect {
         Self {
             card: &T::CARD,
             columns: T::COLUMNS,
+            shapes_others: T::SHAPES_OTHERS,
             basis: T::basis::<f64>,
             contact: T::contact,
             delay_s: T::delay_s,

@@ -6,20 +6,33 @@ mod card;
 mod lane;
 mod law;
 
+mod asymmetric_coulomb;
 mod asymmetric_viscous;
+mod cogging;
 mod coulomb;
+mod dead_zone;
 mod decoy_angle;
 mod decoy_time;
 mod delay;
+mod drag;
 mod drift;
+mod dwell;
+mod end_stop;
 mod freeplay;
+mod hardening;
 mod inertia;
+mod load;
 mod offset;
 mod once_per_rev;
+mod position_coulomb;
 mod presliding;
+mod stiction;
 mod stiffness;
 mod stribeck;
+mod tight_spot;
+mod twice_per_rev;
 mod viscous;
+mod warmup;
 
 pub use card::{Card, Grid, Kind, Parameter, Role};
 pub use lane::Lane;
@@ -32,15 +45,28 @@ pub static CATALOGUE: &[Effect] = &[
     Effect::of::<offset::Offset>(),
     Effect::of::<coulomb::Coulomb>(),
     Effect::of::<viscous::Viscous>(),
+    Effect::of::<asymmetric_coulomb::AsymmetricCoulomb>(),
     Effect::of::<asymmetric_viscous::AsymmetricViscous>(),
+    Effect::of::<drag::Drag>(),
     Effect::of::<stribeck::Stribeck>(),
+    Effect::of::<stiction::Stiction>(),
     Effect::of::<presliding::Presliding>(),
     Effect::of::<freeplay::Freeplay>(),
+    Effect::of::<dead_zone::DeadZone>(),
     Effect::of::<stiffness::Stiffness>(),
+    Effect::of::<hardening::Hardening>(),
+    Effect::of::<end_stop::EndStop>(),
     Effect::of::<inertia::Inertia>(),
     Effect::of::<once_per_rev::OncePerRev>(),
+    Effect::of::<twice_per_rev::TwicePerRev>(),
+    Effect::of::<cogging::Cogging>(),
+    Effect::of::<position_coulomb::PositionCoulomb>(),
+    Effect::of::<tight_spot::TightSpot>(),
+    Effect::of::<load::Load>(),
     Effect::of::<delay::Delay>(),
+    Effect::of::<warmup::Warmup>(),
     Effect::of::<drift::Drift>(),
+    Effect::of::<dwell::Dwell>(),
     Effect::of::<decoy_time::DecoyTime>(),
     Effect::of::<decoy_angle::DecoyAngle>(),
 ];

@@ -35,7 +35,9 @@ impl Law for OncePerRev {
                 high: std::f64::consts::PI,
             },
         ],
+        becomes: None,
         per_turn: true,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 2;

@@ -37,10 +37,13 @@ impl Law for Presliding {
                 high: 1.0,
             },
         ],
+        becomes: Some("coulomb"),
         per_turn: false,
+        channel: None,
         needs: Some("coulomb"),
     };
     const COLUMNS: usize = 0;
+    const SHAPES_OTHERS: bool = true;
 
     fn basis<L: Lane>(_motion: &Motion<L>, _inner: &[f64], _out: &mut [L]) {}
 

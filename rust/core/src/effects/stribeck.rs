@@ -35,7 +35,9 @@ impl Law for Stribeck {
                 high: f64::INFINITY,
             },
         ],
+        becomes: Some("stiction"),
         per_turn: false,
+        channel: None,
         needs: Some("coulomb"),
     };
     const COLUMNS: usize = 1;

@@ -25,7 +25,9 @@ impl Law for Viscous {
             low: 0.0,
             high: f64::INFINITY,
         }],
+        becomes: None,
         per_turn: false,
+        channel: None,
         needs: None,
     };
     const COLUMNS: usize = 1;

@@ -1,0 +1,49 @@
+//! Friction at rest above the level while moving.
+
+use super::{Card, Grid, Kind, Lane, Law, Motion, Parameter, Role};
+
+/// The law of `stiction`.
+pub struct Stiction;
+
+impl Law for Stiction {
+    const CARD: Card = Card {
+        name: "stiction",
+        title: "stiction (static above kinetic friction)",
+        kind: Kind::FrictionLevel,
+        behind_gap: true,
+        equation: "F_S - F_K at w = 0, on top of Coulomb friction",
+        look: "A spike at every start, gone once the motion is under way.",
+        cause: "Dry contact that settles at rest, sticking seals.",
+        check: "Start several strokes very slowly; relubricate.",
+        typical: "0.1 to 0.5 Nm",
+        source: "paper eq. (5): kinetic and static dry friction",
+        parameters: &[
+            Parameter {
+                key: "extra_nm",
+                symbol: "F_S - F_K",
+                meaning: "static friction above the Coulomb level",
+                role: Role::Linear,
+                low: f64::NEG_INFINITY,
+                high: f64::INFINITY,
+            },
+            Parameter {
+                key: "speed_rad_s",
+                symbol: "v",
+                meaning: "slowest speed the record resolves (not fitted)",
+                role: Role::Inner(Grid::SlowestSpeed),
+                low: 0.0,
+                high: f64::INFINITY,
+            },
+        ],
+        becomes: None,
+        per_turn: false,
+        channel: None,
+        needs: Some("coulomb"),
+    };
+    const COLUMNS: usize = 1;
+
+    fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
+        let ratio = motion.speed / L::splat(inner[0]);
+        out[0] = (-(ratio * ratio)).exp();
+    }
+}
