@@ -14,7 +14,7 @@ from ..diagnosis.chance import p_value_floor
 from ..diagnosis.verdict import MANY_STROKES
 from ..diagnosis.words import number
 from ..model import card
-from . import sentences
+from . import checked, sentences
 from .style import rounded
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from ..tb038.check import Check
 
 # A verdict is told by a word and a class of colour, never by the colour alone.
-SETTLED = {"pass": "good", "fail": "bad", "inconclusive": "open"}
 CLASS_OF_VERDICT = {
     "nothing_missing": "good",
     "named": "found",
@@ -62,7 +61,7 @@ def sections(study: Study | None, check: Check | None, not_checked: str | None, 
         "versions": made["versions"],
         "inputs": [_input(i) for i in made["inputs"]],
         "study": None if study is None else _study(study),
-        "check": None if check is None else _check(check),
+        "check": None if check is None else checked.section(check),
         "not_checked": not_checked,
         "actions": sentences.actions(study, check),
         "settings": _settings(study, check),
@@ -142,12 +141,12 @@ def _look(look: Diagnosis) -> dict[str, Any]:
                 "title": card(c.effect, structure).title,
                 "effect": c.effect,
                 "unseen": rounded(c.held_out_rms),
-                "gain": f"{100 * c.gain:.1f}",
-                "errors": f"{c.gain_errors:.1f}",
+                "gain": _tenths(100 * c.gain),
+                "errors": _tenths(c.gain_errors),
                 "remark": _remark(c, look),
                 "offered": c.effect in look.named,
                 "decoy": c.decoy,
-                "parameters": ", ".join(f"{k} = {number(v)}" for k, v in c.parameters.items()),
+                "parameters": [f"{k} = {number(v)}" for k, v in c.parameters.items()],
             }
             for c in look.candidates
         ],
@@ -171,7 +170,8 @@ def _parameters(study: Study) -> list[dict[str, Any]]:
         given = e.note == "given"
         rows.append(
             {
-                "key": key,
+                "effect": effect,
+                "key": parameter,
                 "meaning": meaning,
                 "value": number(e.value),
                 "interval": "" if e.low is None or given else f"{number(e.low)} to {number(e.high)}",
@@ -186,63 +186,6 @@ def _parameters(study: Study) -> list[dict[str, Any]]:
 
 def _in_degrees(value: float, unit: str) -> str:
     return f"{number(math.degrees(value))} {unit.replace('rad', 'deg')}" if unit in ("rad", "rad/s") else ""
-
-
-def _check(check: Check) -> dict[str, Any]:
-    rules = check.rules
-    return {
-        "rule_set": check.rule_set,
-        "title": rules.title,
-        "verdict": check.verdict,
-        "class": SETTLED[check.verdict],
-        "meaning": sentences.CHECK_MEANING[check.verdict],
-        "centred": check.centred,
-        "recorded": check.as_recorded.verdict if check.centred else None,
-        "offset": None if check.offset_nm is None else f"{check.offset_nm:+.3f}",
-        "limits": {
-            "max": f"{rules.mean_max_nm:g}",
-            "min": f"{rules.mean_above_nm:g}",
-            "std": f"{rules.std_below_nm:g}",
-            "half": f"{rules.half_width_deg:g}",
-            "max_at": rules.section("mean_max"),
-            "min_at": rules.section("mean_above"),
-            "std_at": rules.section("std"),
-        },
-        "rows": [
-            {
-                "run": v.run,
-                "direction": v.direction,
-                "mean": _fixed(v.mean_nm),
-                "std": _fixed(v.std_nm),
-                "largest": _fixed(v.max_abs_nm),
-                "slope": "-" if v.slope_nm_per_deg is None else f"{v.slope_nm_per_deg:+.5f}",
-                "speed": _fixed(v.max_speed_deg_s, 1),
-                "samples": v.samples,
-                "mean_wrong": v.below_max is False or v.above_min is False,
-                "std_wrong": v.steady is False,
-                "verdict": v.verdict,
-                "class": SETTLED[v.verdict],
-                "why": v.why,
-            }
-            for v in check.verifications
-        ],
-        "filter": f"{check.filter.poles} poles, {check.filter.cutoff_hz:g} Hz: {check.filter.passes}; {check.filter.text}",
-        "per_turn": _per_turn(check),
-        "checklist": [{"step": item.step, "text": item.text} for item in check.checklist],
-    }
-
-
-def _per_turn(check: Check) -> str:
-    pattern = check.once_per_rev
-    if pattern.amplitude_nm is None:
-        return "not known"
-    words = "prominent" if pattern.prominent else "not prominent"
-    doubt = "" if pattern.identifiable else "; the range turned cannot tell it from a spring"
-    return f"{pattern.amplitude_nm:.3f} Nm, {words}{doubt}"
-
-
-def _fixed(value: float | None, digits: int = 3) -> str:
-    return "-" if value is None else f"{value:.{digits}f}"
 
 
 def _input(given: dict[str, Any]) -> dict[str, Any]:
@@ -285,7 +228,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
             ("Noise floor", study.noise_floor.method),
         ]
     if check is not None:
-        rows += [("Rule set", check.rules.title), ("Filter of the check", _check(check)["filter"])]
+        rows += [("Rule set", check.rules.title), ("Filter of the check", checked.filter_words(check))]
         rows += [("Hysteresis centre", "removed before the verdict" if check.centred else "left as recorded")]
     return rows
 
@@ -303,6 +246,11 @@ def _unseen(study: Study) -> str:
     if len(study.runs) > 1:
         return "each run predicted from the others"
     return "strokes of the one run predicted in folds from the others"
+
+
+def _tenths(value: float) -> str:
+    # Adding zero turns -0.0 into 0.0.
+    return f"{round(value, 1) + 0.0:.1f}"
 
 
 def probability(value: float) -> str:

@@ -33,7 +33,7 @@ def loops(fit: Fit) -> Any:
     _, motion, unit = motion_axis(fit.model.structure)
     picture.update_xaxes(title_text=f"{motion} [{unit}]")
     picture.update_yaxes(title_text=_effort(fit))
-    return dressed(picture, height=480, title="Measured and modelled loops")
+    return dressed(picture, height=500, title="Measured and modelled loops", legend=True)
 
 
 def loops_before_after(study: Study) -> Any:
@@ -57,7 +57,7 @@ def loops_before_after(study: Study) -> Any:
     _, motion, unit = motion_axis(first.model.structure)
     picture.update_xaxes(title_text=f"{motion} [{unit}]")
     picture.update_yaxes(title_text=_effort(first), col=1)
-    return dressed(picture, height=440)
+    return dressed(picture, height=460, legend=True)
 
 
 def residual_time(fit: Fit) -> Any:
@@ -99,7 +99,8 @@ def residual_time(fit: Fit) -> Any:
 def _loop_traces(fit: Fit, colour: str, words: str, points: int) -> list[Any]:
     go = plotly()
     factor, _, _ = motion_axis(fit.model.structure)
-    measured, modelled = [], []
+    measured: list[Any] = []
+    modelled: list[Any] = []
     for number, (r, predicted) in enumerate(zip(fit.runs, fit.predicted, strict=True)):
         x = r.motion[r.usable] * factor
         for values, into, name, line in (

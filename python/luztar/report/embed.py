@@ -30,7 +30,7 @@ def plain_values(value: Any) -> Any:
 def safe_json(value: Any) -> str:
     """Return JSON that may stand inside a script element, whatever names it holds.
 
-    ``<``, ``>`` and ``&`` are written as escapes of JSON itself, so that no text can end the element or begin a comment.
+    ``<``, ``>`` and ``&`` are written as escapes of JSON itself: no text can end the element or begin a comment.
     """
     text = json.dumps(plain_values(value), allow_nan=False, ensure_ascii=True, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

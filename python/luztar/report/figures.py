@@ -67,7 +67,7 @@ def ladder(study: Study) -> Any:
     picture.update_yaxes(
         tickvals=list(range(len(steps))), ticktext=labels, range=[len(steps) - 0.45, -0.55], showgrid=False
     )
-    return listed(picture, height=120 + 52 * len(steps))
+    return listed(picture, height=96 + 52 * len(steps), legend=False)
 
 
 def step_label(step: Step, study: Study) -> str:
@@ -92,12 +92,13 @@ def candidates(diagnosis: Diagnosis) -> Any:
     fit = diagnosis.fit
     shown = [c for c in diagnosis.candidates if math.isfinite(c.held_out_rms)]
     values = [c.held_out_rms for c in shown]
-    # The gain is a share of the squared error, so any candidate tells what the model has without it.
-    base = math.sqrt(values[0] ** 2 / max(1.0 - shown[0].gain, 1e-12)) if shown else 0.0
+    # The gain is a share of the error, so any candidate tells what the model has without it.
+    base = values[0] / max(1.0 - shown[0].gain, 1e-12) if shown else 0.0
     low = min([*values, base])
     # Differences of less than a few per cent must not fill the picture, nor must what only does harm.
     spare = max(0.5 * (base - low), 0.04 * base)
     edge = base + spare
+    beyond = "; triangles: beyond" if any(v > edge for v in values) else ""
     best = "best" if len(diagnosis.named) == 1 else "cannot be told from the best"
     groups: list[tuple[str, str, str, list[Tried]]] = [
         (best, AFTER, "circle", [c for c in shown if _offered(c, diagnosis)]),
@@ -107,19 +108,24 @@ def candidates(diagnosis: Diagnosis) -> Any:
     picture = plotly().Figure()
     place = {c.effect: i for i, c in enumerate(shown)}
     for name, colour, symbol, members in groups:
-        if members:
+        for clipped in (False, True):
+            part = [c for c in members if (c.held_out_rms > edge) == clipped]
+            if not part:
+                continue
             picture.add_scatter(
-                x=numbers(min(c.held_out_rms, edge) for c in members),
-                y=[place[c.effect] for c in members],
+                x=numbers(min(c.held_out_rms, edge) for c in part),
+                y=[place[c.effect] for c in part],
                 mode="markers",
                 marker={
                     "color": colour,
-                    "symbol": [symbol if c.held_out_rms <= edge else "triangle-right" for c in members],
+                    "symbol": "triangle-right" if clipped else symbol,
                     "size": 11,
                     "line": {"color": INK, "width": 0.6},
                 },
                 name=name,
-                hovertext=[f"{rounded(c.held_out_rms)}: {100 * c.gain:.1f} % off the squared error" for c in members],
+                legendgroup=name,
+                showlegend=not clipped,
+                hovertext=[f"{rounded(c.held_out_rms)}: {100 * c.gain:.1f} % off the error" for c in part],
                 hoverinfo="text",
             )
     picture.add_vline(
@@ -130,7 +136,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
     )
     picture.update_xaxes(
         range=[low - 0.3 * spare, edge + 0.15 * spare],
-        title_text=f"unseen error with this effect added, rms [{fit.noise_floor.unit}]; triangles lie further right",
+        title_text=f"unseen error with the effect added [{fit.noise_floor.unit}]{beyond}",
     )
     structure = fit.model.structure_name
     labels = [f"{plain(card(c.effect, structure).title)}{_folded(c)} " for c in shown]
@@ -194,11 +200,9 @@ def parameters(fit: Fit) -> Any:
     return listed(picture, height=130 + 42 * len(labels))
 
 
-def listed(picture: Any, *, height: int) -> Any:
+def listed(picture: Any, *, height: int, legend: bool = True) -> Any:
     """Return a figure whose rows are named things rather than numbers, its legend below it."""
-    made = dressed(picture, height=height)
-    # The rows count from 0, which is no place for an axis; the legend keeps its distance whatever the height.
+    made = dressed(picture, height=height, legend=legend)
+    # The rows count from 0, which is no place for an axis.
     made.update_yaxes(zeroline=False)
-    made.update_layout(legend={"orientation": "h", "yref": "container", "y": 0.0, "yanchor": "bottom", "x": 0.0})
-    made.update_layout(margin={"b": 84})
     return made

@@ -50,7 +50,8 @@ def _of_check(check: Check) -> dict[str, Any]:
     made = values(check.figure())
     for trace in made["data"]:
         # The check names its curves after the files; a report must not take a tag in a name for one.
-        trace["name"] = plain(trace.get("name", ""))
+        for key in ("name", "legendgroup"):
+            trace[key] = plain(trace.get(key, ""))
     made["layout"].pop("template", None)
     made["layout"] |= {
         "template": "none",

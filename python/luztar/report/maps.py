@@ -38,7 +38,7 @@ def where_before_after(study: Study) -> Any:
     """
     if len(study.steps) == 1:
         return _maps([(study.first, "")])
-    return _maps([(study.first, "as given: "), (study.last, "after the last step: ")])
+    return _maps([(study.first, "as given, "), (study.last, "after, ")])
 
 
 def _maps(looks: list[tuple[Comparison | Diagnosis, str]]) -> Any:
@@ -54,6 +54,7 @@ def _maps(looks: list[tuple[Comparison | Diagnosis, str]]) -> Any:
         horizontal_spacing=0.05,
         vertical_spacing=0.14,
     )
+    hover = f"%{{x:.4g}} {unit}, %{{y:.3g}} {unit}/s: %{{z:.3g}} {structure.effort_unit}<extra></extra>"
     limit = 0.0
     for row, (look, _) in enumerate(looks, start=1):
         for column, cells in enumerate((look.map.increasing, look.map.decreasing), start=1):
@@ -67,7 +68,7 @@ def _maps(looks: list[tuple[Comparison | Diagnosis, str]]) -> Any:
                 hoverongaps=False,
                 xgap=1,
                 ygap=1,
-                hovertemplate=f"%{{x:.4g}} {unit}, %{{y:.3g}} {unit}/s: %{{z:.3g}} {structure.effort_unit}<extra></extra>",
+                hovertemplate=hover,
                 row=row,
                 col=column,
             )

@@ -31,25 +31,23 @@ CHECK_MEANING = {
 def titles(names: Sequence[str], structure: str, joint: str) -> str:
     """Return effects by their titles: ``a, b and c``."""
     words = [card(n, structure).title for n in names]
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {joint} {words[-1]}"
+    return "".join(words) if len(words) < 2 else f"{', '.join(words[:-1])} {joint} {words[-1]}"
 
 
 def verdict(study: Study) -> str:
     """Return the study's verdict as one sentence, or two where it stopped half way."""
     structure = study.model.structure_name
-    last = study.last
     if study.verdict == "unexplained":
         tried = [s.added for s in study.steps if s.added]
         rest = f" Tried and not enough: {titles(tried, structure, 'and')}." if tried else ""
         return f"Something is missing that no effect of the catalogue explains.{rest}"
     found = _found(study)
     if not found:
+        names = titles(study.last.named, structure, "or")
         return {
             "nothing_missing": "Nothing is missing from the model that this measurement can show.",
-            "named": f"Missing from the model: {titles(last.named, structure, 'or')}." if last.named else "",
-            "one_of": f"Missing from the model: {titles(last.named, structure, 'or')}; this measurement cannot tell which."
-            if last.named
-            else "",
+            "named": f"Missing from the model: {names}.",
+            "one_of": f"Missing from the model: {names}; this measurement cannot tell which.",
             "too_few_strokes": "There are too few strokes to say whether anything is missing.",
             "below_practical_size": "Something may be missing, but nothing that would change the prediction by 1 %.",
         }[study.verdict]
@@ -128,7 +126,7 @@ def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
         entry = card(name, structure)
         found.append((entry.title, f"{entry.check} Usual cause: {_lower(entry.cause)}"))
     seen: set[str] = set()
-    for experiment in [*(s.next_experiment for s in study.steps), study.last.next_experiment]:
+    for experiment in [*(s.next_experiment for s in study.steps if not s.provisional), study.last.next_experiment]:
         if experiment is not None and experiment.text not in seen:
             seen.add(experiment.text)
             found.append((_to_tell(experiment.separates, structure), experiment.text))

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-
 from ..errors import MissingError
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def numbers(values: Iterable[float]) -> list[float | None]:
 
 def rounded(value: float) -> str:
     """Return an error with three digits: its own uncertainty shows in the third at the latest."""
-    return f"{value:.3g}"
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:#.3g}"
 
 
 def plain(text: str) -> str:
@@ -73,7 +72,7 @@ def motion_axis(structure: Structure) -> tuple[float, str, str]:
     return 1000.0, structure.motion, "mm"
 
 
-def dressed(figure: Any, *, height: int, title: str = "", **layout: Any) -> Any:
+def dressed(figure: Any, *, height: int, title: str = "", legend: bool = False, **layout: Any) -> Any:
     """Return the figure with the layout that all figures share."""
     # Without the default template a figure is 7 kB smaller.
     figure.update_layout(
@@ -83,11 +82,14 @@ def dressed(figure: Any, *, height: int, title: str = "", **layout: Any) -> Any:
         font={"family": FONT, "size": 12, "color": INK},
         paper_bgcolor="white",
         plot_bgcolor="white",
-        margin={"l": 70, "r": 20, "t": 60 if title else 34, "b": 50},
-        legend={"orientation": "h", "y": -0.18, "x": 0.0},
+        margin={"l": 70, "r": 20, "t": 60 if title else 34, "b": 96 if legend else 52},
+        # Below the axis title whatever the height.
+        legend={"orientation": "h", "yref": "container", "y": 0.0, "yanchor": "bottom", "x": 0.0},
         hovermode="closest",
     )
     figure.update_xaxes(gridcolor=GRID, zerolinecolor="#9AA5B1", linecolor="#9AA5B1", automargin=True)
     figure.update_yaxes(gridcolor=GRID, zerolinecolor="#9AA5B1", linecolor="#9AA5B1", automargin=True)
+    # Titles of panels are annotations; 13 points fit beside each other on paper.
+    figure.update_annotations(font_size=13)
     figure.update_layout(**layout)
     return figure

@@ -1,0 +1,85 @@
+"""The report in a real browser: it draws, complains about nothing, asks nobody, and runs no name as code."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import luztar
+from report_cases import HOSTILE, HOSTILE_TOO, STRIBECK, runs
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip(f"none of {', '.join(BROWSERS)} is installed")
+    with playwright.sync_playwright() as p:
+        opened = p.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    study = luztar.study(luztar.Model.rig(), runs(HOSTILE, HOSTILE_TOO, "run3.csv", hidden=STRIBECK))
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    study.report(path)
+    return path
+
+
+def opened(browser: Any, report: Path) -> tuple[Any, list[str], list[str]]:
+    """The page, drawn; what the console said; what was asked for."""
+    page = browser.new_page(viewport={"width": 1100, "height": 900})
+    said: list[str] = []
+    asked: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("dialog", lambda dialog: (said.append(f"dialog {dialog.message}"), dialog.dismiss()))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(report.as_uri())
+    page.wait_for_selector("html[data-drawn]", state="attached", timeout=60_000)
+    page.wait_for_timeout(300)
+    return page, said, asked
+
+
+def test_it_draws_every_figure_without_a_word_or_a_request(browser: Any, report: Path) -> None:
+    page, said, asked = opened(browser, report)
+    assert said == []
+    assert asked == [report.as_uri()]
+    places = page.locator("[data-figure]").count()
+    assert places == 8
+    assert page.locator("[data-figure] svg.main-svg").count() >= places
+    # No figure is empty: each has drawn at least one curve, bar, point or picture of a heat map.
+    empty = page.evaluate(
+        "[...document.querySelectorAll('[data-figure]')].filter(e =>"
+        " !e.querySelector('.scatterlayer .trace, .barlayer .trace, .heatmaplayer .hm')).length"
+    )
+    assert empty == 0
+    page.close()
+
+
+def test_hostile_names_are_text(browser: Any, report: Path) -> None:
+    page, said, _ = opened(browser, report)
+    assert page.locator("img[onerror], a[href*='example.com']").count() == 0
+    assert page.evaluate("document.querySelectorAll('svg a').length") == 0
+    assert HOSTILE in page.locator("body").inner_text()
+    # Hovering runs the figures' own text code.
+    for place in page.locator("[data-figure]").all():
+        place.hover()
+        page.wait_for_timeout(50)
+    assert [s for s in said if "dialog" in s] == []
+    page.close()
+
+
+def test_nothing_is_wider_than_the_page(browser: Any, report: Path) -> None:
+    page, _, _ = opened(browser, report)
+    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    page.close()
