@@ -20,7 +20,7 @@ from .terms import inner_grid, shapes_contact
 
 # A candidate within this many standard errors (paired by stroke) of the best is not told apart from it.
 SET_ERRORS = 2.0
-# A gain that no engineer would act on is none: 1 % of the held-out loss.
+# A gain that no engineer would act on is none: 1 % of the held-out error (rms).
 PRACTICAL_GAIN = 0.01
 # Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
 REFINED_WITHIN = 1.6
@@ -64,6 +64,13 @@ def possible(fitted: Fit) -> list[Card]:
             continue
         found.append(c)
     return found
+
+
+def baseline(fitted: Fit) -> Search:
+    """Return the fitted model as the candidates meet it: its inner parameters as they are, in every fold."""
+    search = Search(fitted.search.folds)
+    search.visit(fitted.state)
+    return search
 
 
 def try_all(
@@ -130,9 +137,13 @@ def paired_error(a: Sequence[float] | np.ndarray, b: Sequence[float] | np.ndarra
 
 
 def gain(base: Search, better: Search) -> tuple[float, float]:
-    """Return the share of the held-out loss that a candidate takes away, and how many standard errors that is."""
+    """Return the share of the held-out error (rms) that a candidate takes away.
+
+    The second value says how many standard errors, paired by stroke, the fall of the loss is.
+    """
     total, error = paired_error(base.losses, better.losses)
-    return total / max(base.held_out_loss, np.finfo(float).tiny), total / max(error, np.finfo(float).tiny)
+    left = better.held_out_loss / max(base.held_out_loss, np.finfo(float).tiny)
+    return 1.0 - float(np.sqrt(max(left, 0.0))), total / max(error, np.finfo(float).tiny)
 
 
 def equivalent(found: Sequence[Candidate]) -> list[Candidate]:

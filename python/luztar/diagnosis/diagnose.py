@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from .candidates import Candidate, gain, try_all
+from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
@@ -27,9 +27,9 @@ class Tried:
     rms, held_out_rms : float
         Error of the refitted model, from the losses of the comparison (reversal instants adjusted).
     gain : float
-        Share of the held-out loss it takes away.
+        Share of the held-out error (rms) it takes away.
     gain_errors : float
-        How many standard errors (paired by stroke) that is.
+        How many standard errors (paired by stroke) the fall of the loss is.
     p_value : float or None
         Adjusted over all candidates.
     in_set, decoy : bool
@@ -176,7 +176,7 @@ def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> T
     state = c.search.best
     assert state is not None
     samples = max(int(state.blocks.samples.sum()), 1)
-    share, errors = gain(fitted.search, c.search)
+    share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,
         rms=(c.search.loss / samples) ** 0.5,

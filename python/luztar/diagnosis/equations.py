@@ -100,14 +100,13 @@ class Columns:
         return tuple(m[:, -2] for m in self.matrix)
 
 
-def columns(runs: Sequence[Prepared], terms: Terms, band_hz: float) -> Columns:
+def columns(runs: Sequence[Prepared], terms: Terms) -> Columns:
     """Ask the core for the columns of all terms."""
     pairs = terms.pairs()
     matrix = []
     for r in runs:
         block = r.recording.columns(pairs, list(range(len(pairs)))).T if pairs else np.empty((r.effort.size, 0))
-        # Within one period of the band's edge before and two after the start, a reversal is over.
-        shift = r.recording.reversal_shift(pairs, 1.0 / band_hz, 2.0 / band_hz)
+        shift = r.recording.start_shift(pairs)
         matrix.append(np.column_stack([block, shift, r.effort]))
     return Columns(terms, tuple(matrix))
 

@@ -19,7 +19,7 @@ from .misfit import Misfit, misfit
 from .prepare import Prepared, prepare
 from .profile import Problem, State, owners, state
 from .search import Search
-from .terms import start_terms
+from .terms import inner_grid, start_terms
 
 if TYPE_CHECKING:
     from ..measurement import Run
@@ -135,8 +135,24 @@ def fit_prepared(
     first = state(problem, start_terms(model, runs))
     search = Search(Folds.of(first.blocks))
     search.visit(first)
+    for name in model.effects:
+        _search_grid(problem, search, name)
     search.refine(problem)
     return finish(problem, search, unseen, floor)
+
+
+def _search_grid(problem: Problem, search: Search, name: str) -> None:
+    """Try the grid of an effect's inner parameters, unless the user or an earlier step has given a start.
+
+    A local search would stay where it starts: the loss over a gap is flat or has several valleys.
+    """
+    model = problem.model
+    inner = card(name, model.structure_name).inner
+    if not inner or any(f"{name}.{p.key}" in model.start for p in inner):
+        return
+    assert search.best is not None
+    for values in inner_grid(name, model, problem.runs):
+        search.visit(state(problem, search.best.terms.having(name, values), search.best, name))
 
 
 def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor: NoiseFloor) -> Fit:

@@ -154,7 +154,7 @@ def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: f
     level = friction_level(runs)
     squares, samples, zone_samples = 0.0, 0, 0
     for r in runs:
-        shift = r.recording.reversal_shift([("coulomb", [0.5 * r.recording.resolution])], 0.5, 0.5)
+        shift = r.recording.start_shift([("coulomb", [0.5 * r.recording.resolution])])
         for s in r.strokes:
             part = slice(s.first, s.last)
             keep = r.usable[part]

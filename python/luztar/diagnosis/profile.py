@@ -70,9 +70,8 @@ def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
 
 def state(problem: Problem, terms: Terms, like: State | None = None, changed: str | None = None) -> State:
     """Build columns and blocks; with ``like`` and ``changed`` only the columns of one effect are made anew."""
-    band = problem.model.band_hz
     if like is None or changed is None or shapes_contact(changed) or like.terms.effects != terms.effects:
-        made = _known_removed(problem, terms, columns(problem.runs, terms, band))
+        made = _known_removed(problem, terms, columns(problem.runs, terms))
     else:
         made = _replaced(problem, terms, like.made, changed)
     return State(terms, made, blocks(problem.runs, made, problem.weights))

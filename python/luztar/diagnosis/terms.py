@@ -95,7 +95,7 @@ def grid(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
         case "travel":
             return np.geomspace(least_travel(runs), number * reach, points)
         case "resolution":
-            return step * np.geomspace(0.25, 2.0, points)
+            return step * np.geomspace(0.03, 2.0, points)
         case "place":
             return np.linspace(low, high, points + 2)[1:-1]
         case "width":

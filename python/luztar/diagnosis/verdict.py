@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, equivalent, gain
+from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, equivalent, gain
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
 from .fit import Fit
@@ -84,7 +84,7 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
     same = equivalent(rivals)
     names = tuple(c.name for c in same)
     best = rivals[0] if rivals else None
-    share, errors = gain(fitted.search, best.search) if best else (0.0, 0.0)
+    share, errors = gain(baseline(fitted), best.search) if best else (0.0, 0.0)
     few = strokes < MANY_STROKES
     detected = few or detection.p_value <= ALPHA
     worth = best is not None and share >= PRACTICAL_GAIN and errors >= SET_ERRORS
@@ -92,8 +92,7 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
         worth = worth_with_few(fitted, best, rivals)
     if not detected:
         return Judgement("nothing_missing", (), names, simpler, f"no test rejects at {100 * ALPHA:g} %")
-    own = best is not None and detection.candidates.get(best.name, 1.0) <= ALPHA
-    if worth and best is not None and (few or own or detection.lack_of_fit <= ALPHA):
+    if worth and best is not None:
         if best.card.is_decoy:
             return Judgement("unexplained", (), names, simpler, "a decoy without physics explains it best")
         real = tuple(c.name for c in same if not c.card.is_decoy)
@@ -114,13 +113,14 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
 
 def worth_with_few(fitted: Fit, best: Candidate, rivals: Sequence[Candidate]) -> bool:
     """Whether a candidate gains in every fold above the practical size and above the best decoy."""
-    folds = fitted.search.folds
+    folds, before_all = fitted.search.folds, baseline(fitted).losses
     decoys = [c for c in rivals if c.card.is_decoy]
     for k in range(folds.count):
         inside = folds.of_stroke == k
-        before = float(fitted.search.losses[inside].sum())
+        before = float(before_all[inside].sum())
         after = float(best.search.losses[inside].sum())
-        if after > (1.0 - PRACTICAL_GAIN) * before:
+        # Losses are squares: 1 % of the error is 2 % of them.
+        if after > (1.0 - PRACTICAL_GAIN) ** 2 * before:
             return False
         if any(float(d.search.losses[inside].sum()) < after for d in decoys):
             return False

@@ -154,6 +154,9 @@ def _bytes(path: Path, where: str) -> bytes:
                 f"the file is larger than {MOST_BYTES >> 30} GiB", where, "Split the record, or export fewer channels."
             )
         return path.read_bytes()
+    except MeasurementError:
+        # It is a ValueError too, and already says what is wrong.
+        raise
     except FileNotFoundError:
         raise MeasurementError("there is no such file", where, "Check the path.") from None
     except (OSError, ValueError) as error:

@@ -106,18 +106,16 @@ impl Recording {
             .into_pyarray(py))
     }
 
-    fn reversal_shift<'py>(
+    fn start_shift<'py>(
         &self,
         py: Python<'py>,
         model: Terms,
-        before_s: f64,
-        after_s: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = terms(model);
-        let kept = py
-            .detach(|| self.0.reversal_shift(&model, before_s, after_s))
-            .map_err(CoreError)?;
-        Ok(kept.into_pyarray(py))
+        Ok(py
+            .detach(|| self.0.start_shift(&model))
+            .map_err(CoreError)?
+            .into_pyarray(py))
     }
 
     /// Shape (columns, kept samples).

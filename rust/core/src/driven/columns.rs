@@ -6,6 +6,14 @@ use super::recording::Recording;
 use crate::Error;
 use crate::effects::{CATALOGUE, Contact, Effect, Kind, Motion, find};
 
+/// After this many steps of the position sensor a start is no longer uncertain: the friction of a sharp break-away has
+/// turned within twice its travel, which is at most two steps.
+const STEPS_TO_BE_SURE: f64 = 4.0;
+
+/// The parabola into the first border takes this many times what lies between the first two, which is twice the
+/// uncertainty of an onset; doubled for starts that are gentler than that.
+const START_LEAD: f64 = 3.0;
+
 /// One effect of a model with the values of its inner parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term {
@@ -126,27 +134,28 @@ impl Recording {
         Ok(all)
     }
 
-    /// What a shift of every reversal in time would add, per second of shift and unit of friction level.
+    /// What a shift of every start in time would add, per second of shift and unit of friction level.
     ///
     /// The instant a motion starts is known to a step of the sensor only; the fit carries one such shift per stroke.
-    /// The column holds the rate of the friction state near each onset and is zero elsewhere.
+    /// The column holds the rate of the friction state from a stroke's onset until the motion has run through a few
+    /// steps; from there on the sensor knows where it is.
     ///
     /// # Errors
     /// As [`Recording::columns`].
-    pub fn reversal_shift(
-        &self,
-        terms: &[Term],
-        before_s: f64,
-        after_s: f64,
-    ) -> Result<Vec<f64>, Error> {
+    pub fn start_shift(&self, terms: &[Term]) -> Result<Vec<f64>, Error> {
         let (contact, delay_s) = self.contact(terms)?;
         let rate = derivative(&friction_state(&contact, &self.seen), self.sample_rate_hz);
         let mut near = vec![0.0; rate.len()];
         for stroke in self.strokes() {
-            let from = stroke
-                .onset
-                .saturating_sub((before_s * self.sample_rate_hz) as usize);
-            let to = (stroke.onset + (after_s * self.sample_rate_hz) as usize).min(rate.len());
+            // The onset is the last sample at rest; the parabola into the first step begins before it.
+            let from = stroke.onset.saturating_sub(
+                (2.0 * START_LEAD * stroke.onset_uncertainty_s * self.sample_rate_hz).ceil()
+                    as usize,
+            );
+            let start = self.seen[stroke.onset];
+            let gone =
+                |i: &usize| (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution();
+            let to = (stroke.onset..rate.len()).find(gone).unwrap_or(rate.len());
             near[from..to].copy_from_slice(&rate[from..to]);
         }
         Ok(self.late(&self.filtered(&near)?, delay_s))

@@ -1,0 +1,305 @@
+"""What stands in a report, as plain values for the template: no HTML here, no decisions there."""
+
+from __future__ import annotations
+
+import math
+import platform
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import __version__
+from ..diagnosis.words import number
+from ..model import card
+from . import sentences
+
+if TYPE_CHECKING:
+    from ..diagnosis.diagnose import Diagnosis
+    from ..diagnosis.study import Study
+    from ..tb038.check import Check
+
+# A verdict is told by a word and a class of colour, never by the colour alone.
+SETTLED = {"pass": "good", "fail": "bad", "inconclusive": "open"}
+CLASS_OF_VERDICT = {
+    "nothing_missing": "good",
+    "named": "found",
+    "one_of": "found",
+    "below_practical_size": "good",
+    "unexplained": "open",
+    "too_few_strokes": "open",
+}
+WORST_SHOWN = 4
+
+
+def provenance(study: Study | None, check: Check | None, when: datetime) -> dict[str, Any]:
+    """Return where a report comes from: versions, date, inputs with their hashes."""
+    made: dict[str, Any] = {
+        "schema": 1,
+        "date": when.isoformat(timespec="seconds"),
+        "versions": {"luztar": __version__, "python": platform.python_version(), "numpy": np.__version__},
+        "inputs": [],
+    }
+    if study is not None:
+        for run, held_out in [*((r, False) for r in study.runs), *((r, True) for r in study.held_out)]:
+            made["inputs"].append({**run.to_dict(), "source": None, "held_out": held_out})
+        made["model"] = study.model.to_dict()
+    elif check is not None:
+        for report in check.integrity:
+            integrity = {k: v for k, v in report.items() if k != "run"}
+            made["inputs"].append({"name": report["run"], "sha256": None, "held_out": False, "integrity": integrity})
+    return made
+
+
+def sections(
+    study: Study | None, check: Check | None, not_checked: str | None, made: dict[str, Any]
+) -> dict[str, Any]:
+    """Return everything the template shows except figures and scripts."""
+    return {
+        "title": "Friction report",
+        "date": made["date"].replace("T", " "),
+        "versions": made["versions"],
+        "inputs": [_input(i) for i in made["inputs"]],
+        "study": None if study is None else _study(study),
+        "check": None if check is None else _check(check),
+        "not_checked": not_checked,
+        "actions": sentences.actions(study, check),
+        "settings": _settings(study, check),
+    }
+
+
+def _study(study: Study) -> dict[str, Any]:
+    fit = study.steps[-1].fit
+    return {
+        "verdict": study.verdict,
+        "class": CLASS_OF_VERDICT[study.verdict] if len(study.steps) == 1 or study.verdict == "unexplained" else "found",
+        "sentence": sentences.verdict(study),
+        "meaning": sentences.VERDICT_MEANING[study.verdict],
+        "why": study.last.judgement.why,
+        "error": sentences.error_sentence(study),
+        "effort": fit.model.structure.effort,
+        "unit": fit.noise_floor.unit,
+        "floor": {
+            "rms": number(study.noise_floor.rms),
+            "low": number(study.noise_floor.low),
+            "high": number(study.noise_floor.high),
+            "method": study.noise_floor.method,
+        },
+        "improved": len(study.steps) > 1,
+        "steps": _steps(study),
+        "where_before": [r.text for r in study.first.where[:WORST_SHOWN]],
+        "where_after": [r.text for r in study.last.where[:WORST_SHOWN]],
+        "first": _look(study.first),
+        "last": _look(study.last) if len(study.looks) > 1 else None,
+        "parameters": _parameters(study),
+        "provisional": any(s.provisional for s in study.steps),
+        "held_out": len(study.held_out) > 0,
+        "runs": len(study.runs),
+    }
+
+
+def _steps(study: Study) -> list[dict[str, Any]]:
+    structure = study.model.structure_name
+    rows = []
+    for place, step in enumerate(study.steps):
+        e = step.fit.error
+        rows.append(
+            {
+                "place": place,
+                "name": "model as given" if step.added is None else card(step.added, structure).title,
+                "effect": step.added,
+                "look": None if step.added is None else card(step.added, structure).look,
+                "others": [card(n, structure).title for n in step.set if n != step.added],
+                "effects": ", ".join(step.fit.model.effects),
+                "unseen": number(e.held_out_rms),
+                "unseen_percent": f"{100 * e.held_out_relative:.1f}",
+                "seen": number(e.rms),
+                "floor_ratio": f"{e.floor_ratio:.1f}",
+                "provisional": step.provisional,
+                "experiment": step.next_experiment.text if step.next_experiment else None,
+            }
+        )
+    return rows
+
+
+def _look(look: Diagnosis) -> dict[str, Any]:
+    structure = look.fit.model.structure_name
+    return {
+        "effects": ", ".join(look.fit.model.effects),
+        "verdict": look.verdict,
+        "why": look.judgement.why,
+        "strokes": look.detection.strokes,
+        "p_value": probability(look.detection.p_value),
+        "lack_of_fit": probability(look.detection.lack_of_fit),
+        "along": look.detection.along,
+        "candidates": [
+            {
+                "title": card(c.effect, structure).title,
+                "effect": c.effect,
+                "unseen": number(c.held_out_rms),
+                "gain": f"{100 * c.gain:.1f}",
+                "errors": f"{c.gain_errors:.1f}",
+                "p_value": "" if c.p_value is None else probability(c.p_value),
+                "remark": _remark(c.in_set, c.decoy, c.same_as),
+                "in_set": c.in_set and not c.decoy,
+                "decoy": c.decoy,
+                "parameters": ", ".join(f"{k} = {number(v)}" for k, v in c.parameters.items()),
+            }
+            for c in look.candidates
+        ],
+    }
+
+
+def _remark(in_set: bool, decoy: bool, same_as: str | None) -> str:
+    words = ["decoy"] if decoy else []
+    words += [f"came out as {same_as}"] if same_as else []
+    words += ["cannot be told from the best"] if in_set else []
+    return ", ".join(words)
+
+
+def _parameters(study: Study) -> list[dict[str, Any]]:
+    structure = study.model.structure_name
+    rows = []
+    for key, e in study.steps[-1].fit.parameters.items():
+        effect, _, parameter = key.partition(".")
+        meaning = next((p.meaning for p in card(effect, structure).parameters if p.key == parameter), "")
+        given = e.note == "given"
+        rows.append(
+            {
+                "key": key,
+                "meaning": meaning,
+                "value": number(e.value),
+                "interval": "" if e.low is None or given else f"{number(e.low)} to {number(e.high)}",
+                "unit": e.unit,
+                "degrees": _in_degrees(e.value, e.unit),
+                "note": e.note,
+                "sound": e.identifiable,
+            }
+        )
+    return rows
+
+
+def _in_degrees(value: float, unit: str) -> str:
+    return f"{number(math.degrees(value))} {unit.replace('rad', 'deg')}" if unit in ("rad", "rad/s") else ""
+
+
+def _check(check: Check) -> dict[str, Any]:
+    rules = check.rules
+    return {
+        "rule_set": check.rule_set,
+        "title": rules.title,
+        "verdict": check.verdict,
+        "class": SETTLED[check.verdict],
+        "meaning": sentences.CHECK_MEANING[check.verdict],
+        "centred": check.centred,
+        "recorded": check.as_recorded.verdict if check.centred else None,
+        "offset": None if check.offset_nm is None else f"{check.offset_nm:+.3f}",
+        "limits": {
+            "max": f"{rules.mean_max_nm:g}",
+            "min": f"{rules.mean_above_nm:g}",
+            "std": f"{rules.std_below_nm:g}",
+            "half": f"{rules.half_width_deg:g}",
+            "max_at": rules.section("mean_max"),
+            "min_at": rules.section("mean_above"),
+            "std_at": rules.section("std"),
+        },
+        "rows": [
+            {
+                "run": v.run,
+                "direction": v.direction,
+                "mean": _fixed(v.mean_nm),
+                "std": _fixed(v.std_nm),
+                "largest": _fixed(v.max_abs_nm),
+                "slope": "-" if v.slope_nm_per_deg is None else f"{v.slope_nm_per_deg:+.5f}",
+                "speed": _fixed(v.max_speed_deg_s, 1),
+                "samples": v.samples,
+                "mean_wrong": v.below_max is False or v.above_min is False,
+                "std_wrong": v.steady is False,
+                "verdict": v.verdict,
+                "class": SETTLED[v.verdict],
+                "why": v.why,
+            }
+            for v in check.verifications
+        ],
+        "filter": f"{check.filter.poles} poles, {check.filter.cutoff_hz:g} Hz: {check.filter.passes}; {check.filter.text}",
+        "per_turn": _per_turn(check),
+        "checklist": [{"step": item.step, "text": item.text} for item in check.checklist],
+    }
+
+
+def _per_turn(check: Check) -> str:
+    pattern = check.once_per_rev
+    if pattern.amplitude_nm is None:
+        return "not known"
+    words = "prominent" if pattern.prominent else "not prominent"
+    doubt = "" if pattern.identifiable else "; the range turned cannot tell it from a spring"
+    return f"{pattern.amplitude_nm:.3f} Nm, {words}{doubt}"
+
+
+def _fixed(value: float | None, digits: int = 3) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+def _input(given: dict[str, Any]) -> dict[str, Any]:
+    integrity = given["integrity"]
+    rate = given.get("sample_rate_hz")
+    if rate is None and integrity["dt_median_s"]:
+        pace = f"about {1.0 / integrity['dt_median_s']:.4g} Hz"
+    else:
+        pace = "not evenly sampled" if rate is None else f"{rate:g} Hz"
+    declared = integrity["rows_declared"]
+    rows = f"{integrity['rows_read']} rows" + (f" of {declared} declared" if declared is not None else "")
+    units = integrity["units"]
+    return {
+        "name": given["name"],
+        "held_out": given["held_out"],
+        "sha256": given["sha256"],
+        "rows": rows,
+        "pace": pace,
+        "complete": integrity["complete"],
+        "columns": [
+            {"channel": k, "column": column, "read": units[k]["read"] if k in units else ""}
+            for k, column in integrity["columns"].items()
+        ],
+        "findings": [{"text": f["text"], "doubtful": f["doubtful"]} for f in integrity["findings"]],
+    }
+
+
+def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
+    rows: list[tuple[str, str]] = []
+    if study is not None:
+        model = study.model
+        rows += [
+            ("Structure", f"{model.structure_name}: {model.structure.motion} in, {model.structure.effort} out"),
+            ("Model as given", ", ".join(study.steps[0].fit.model.effects)),
+            ("Model after the last step", ", ".join(model.effects)),
+            ("Given, not estimated", ", ".join(f"{k} = {number(v)}" for k, v in model.known.items()) or "nothing"),
+            ("Band of the comparison", f"0 to {model.band_hz:g} Hz"),
+            ("Filter of the comparison", _comparison_filter(study)),
+            ("Unseen", _unseen(study)),
+            ("Noise floor", study.noise_floor.method),
+        ]
+    if check is not None:
+        rows += [("Rule set", check.rules.title), ("Filter of the check", _check(check)["filter"])]
+        rows += [("Hysteresis centre", "removed before the verdict" if check.centred else "left as recorded")]
+    return rows
+
+
+def _comparison_filter(study: Study) -> str:
+    text = "low pass of 4 poles, forward and backward, the same on measurement and model"
+    if study.model.comparison.filter_already_applied:
+        text += "; the measurement was filtered before and is not filtered again"
+    return text
+
+
+def _unseen(study: Study) -> str:
+    if len(study.held_out):
+        return f"held-out runs, used for nothing but prediction: {', '.join(r.name for r in study.held_out)}"
+    if len(study.runs) > 1:
+        return "each run predicted from the others"
+    return "strokes of the one run predicted in folds from the others"
+
+
+def probability(value: float) -> str:
+    """Return a p-value as it is read."""
+    return "< 0.001" if value < 0.001 else f"{value:.2g}"
