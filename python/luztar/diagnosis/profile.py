@@ -203,9 +203,7 @@ def limits(problem: Problem, name: str, i: int) -> tuple[float, float]:
     return p.low, p.high
 
 
-def _refine_one(
-    problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None
-) -> State:
+def _refine_one(problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None) -> State:
     p = card(name, problem.model.structure_name).inner[i]
     word = p.grid[0] if p.grid else ""
     points = grid(p, problem.runs)
