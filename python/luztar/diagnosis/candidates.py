@@ -77,9 +77,7 @@ def baseline(fitted: Fit) -> Search:
     return search
 
 
-def try_all(
-    fitted: Fit, progress: Callable[[int, int], None] | None = None
-) -> tuple[list[Candidate], list[Feature]]:
+def try_all(fitted: Fit, progress: Callable[[int, int], None] | None = None) -> tuple[list[Candidate], list[Feature]]:
     """Refit a model with each possible effect.
 
     Returns

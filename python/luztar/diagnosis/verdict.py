@@ -85,9 +85,7 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
     rivals = [c for c in found if c.name not in simpler]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:
-        return Judgement(
-            "too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed"
-        )
+        return Judgement("too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed")
     same = equivalent(rivals)
     names = tuple(c.name for c in same)
     best = rivals[0] if rivals else None
