@@ -6,9 +6,9 @@ through four poles at 100 Hz forward and backward, force and regressors decimate
 """
 
 import pytest
-from shared_data import shared
 
 import luztar
+from shared_data import shared
 
 MAP = {"time": "t", "position": "qm", "force": "vir*35.1507"}
 UNITS = {"position": "m", "force": "N"}

@@ -6,9 +6,9 @@ The generator shares no code with the engine; sizes are those of ``generators.ty
 import math
 
 import pytest
-from generators.rig import simulate_rig_set
 
 import luztar
+from generators.rig import simulate_rig_set
 
 BASE = {
     "offset": {"level_nm": 0.05},

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from shared_data import case
 
 import luztar
 from luztar.diagnosis.misfit import rms, usable
+from shared_data import case
 
 NOTHING = ["rig-00", "rig-01"]
 CASES = ["rig-02", "rig-03", "rig-04", "rig-06", "rig-07", "rig-08", "rig-10", "rig-11", "rig-13"]

@@ -30,7 +30,7 @@ _GEOMETRIC = ("speed", "travel", "time", "rest", "width", "resolution")
 # A few values, taken as they are.
 _DISCRETE = ("count", "shape")
 # One value, given by the runs.
-_GIVEN = ("waves_per_range", "slowest_speed")
+_GIVEN = ("waves_per_range",)
 
 
 def word(parameter: Parameter) -> str:
@@ -68,9 +68,7 @@ def points(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
     count = _POINTS.get(kind, 0)
     match kind:
         case "speed":
-            return np.geomspace(_slowest_speed(runs), 0.7 * _top_speed(runs), count)
-        case "slowest_speed":
-            return np.array([_slowest_speed(runs)])
+            return np.geomspace(max(r.recording.slowest_speed for r in runs), 0.7 * _top_speed(runs), count)
         case "travel":
             return np.geomspace(least_travel(runs), high * span, count)
         case "resolution":
@@ -119,8 +117,3 @@ def limits(parameter: Parameter, runs: Sequence[Prepared]) -> tuple[float, float
 
 def _top_speed(runs: Sequence[Prepared]) -> float:
     return max(float(np.abs(r.speed).max()) for r in runs)
-
-
-def _slowest_speed(runs: Sequence[Prepared]) -> float:
-    """The slowest speed worth a law of its own: 1.5 % of the top speed, or ten steps of the sensor a second."""
-    return max(0.015 * _top_speed(runs), 10.0 * max(r.recording.resolution for r in runs))

@@ -154,7 +154,7 @@ def _estimate(value: float, half: float, unit: str, collinear: bool) -> Estimate
 def _why_none(parameter: Parameter) -> str:
     if is_sharpness(parameter):
         return "sharper than the position sensor can show"
-    return "not fitted" if word(parameter) in ("slowest_speed", "waves_per_range") else "chosen among a few values"
+    return "not fitted" if word(parameter) == "waves_per_range" else "chosen among a few values"
 
 
 def _polar(

@@ -70,6 +70,11 @@ impl Recording {
     }
 
     #[getter]
+    fn slowest_speed(&self) -> f64 {
+        self.0.slowest_speed()
+    }
+
+    #[getter]
     fn range(&self) -> f64 {
         self.0.range()
     }

@@ -197,6 +197,7 @@ impl Recording {
     /// The basis of one law along the record, one vector per column.
     fn basis(&self, effect: &Effect, inner: &[f64]) -> Vec<Vec<f64>> {
         let n = self.len();
+        let slowest_speed = self.slowest_speed();
         let mut columns = vec![vec![0.0; n]; effect.columns];
         let mut out = vec![0.0; effect.columns];
         for i in 0..n {
@@ -209,6 +210,7 @@ impl Recording {
                 rest_s: self.phases.rest_s[i],
                 travelled: self.phases.travelled[i],
                 direction: self.phases.direction[i],
+                slowest_speed,
                 load_n: self.load_n.as_ref().map_or(0.0, |load| load[i]),
             };
             (effect.basis)(&motion, inner, &mut out);

@@ -177,6 +177,13 @@ impl Recording {
         span(&self.position)
     }
 
+    /// The slowest speed worth a law of its own: 1.5 % of the top speed, or ten steps of the sensor a second.
+    #[must_use]
+    pub fn slowest_speed(&self) -> f64 {
+        let top = self.speed.iter().fold(0.0_f64, |top, w| top.max(w.abs()));
+        (0.015 * top).max(10.0 * self.resolution.step)
+    }
+
     /// Every how many samples the comparison keeps one.
     #[must_use]
     pub fn decimate(&self) -> usize {

@@ -53,8 +53,6 @@ pub enum Grid {
         /// The largest share.
         high: f64,
     },
-    /// Not searched: the slowest speed that the record resolves.
-    SlowestSpeed,
     /// Geometric, a share of the range of motion.
     Width,
     /// Geometric, between a few seconds and the longest record.
@@ -81,7 +79,6 @@ impl Grid {
             Self::Resolution => "resolution",
             Self::Place => "place",
             Self::Reach { .. } => "reach",
-            Self::SlowestSpeed => "slowest_speed",
             Self::Width => "width",
             Self::Time => "time",
             Self::Rest => "rest",

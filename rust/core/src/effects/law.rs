@@ -22,6 +22,8 @@ pub struct Motion<L> {
     pub travelled: L,
     /// +1 while the position increases, -1 while it decreases, held at rest.
     pub direction: L,
+    /// The slowest speed that the record resolves; at rest the mechanism is slower than this.
+    pub slowest_speed: L,
     /// Load on the contact, N; 0 where the record has no such channel.
     pub load_n: L,
 }

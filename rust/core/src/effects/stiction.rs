@@ -1,6 +1,6 @@
 //! Friction at rest above the level while moving.
 
-use super::{Card, Grid, Kind, Lane, Law, Motion, Parameter, Role};
+use super::{Card, Kind, Lane, Law, Motion, Parameter, Role};
 
 /// The law of `stiction`.
 pub struct Stiction;
@@ -17,24 +17,14 @@ impl Law for Stiction {
         check: "Start several strokes very slowly; relubricate.",
         typical: "0.1 to 0.5 Nm",
         source: "paper eq. (5): kinetic and static dry friction",
-        parameters: &[
-            Parameter {
-                key: "extra_nm",
-                symbol: "F_S - F_K",
-                meaning: "static friction above the Coulomb level",
-                role: Role::Linear,
-                low: f64::NEG_INFINITY,
-                high: f64::INFINITY,
-            },
-            Parameter {
-                key: "speed_rad_s",
-                symbol: "v",
-                meaning: "slowest speed the record resolves (not fitted)",
-                role: Role::Inner(Grid::SlowestSpeed),
-                low: 0.0,
-                high: f64::INFINITY,
-            },
-        ],
+        parameters: &[Parameter {
+            key: "extra_nm",
+            symbol: "F_S - F_K",
+            meaning: "static friction above the Coulomb level",
+            role: Role::Linear,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        }],
         becomes: None,
         per_turn: false,
         channel: None,
@@ -42,8 +32,9 @@ impl Law for Stiction {
     };
     const COLUMNS: usize = 1;
 
-    fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
-        let ratio = motion.speed / L::splat(inner[0]);
+    fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
+        // The limit of Stribeck's law for a speed that goes to zero: the slowest the record resolves.
+        let ratio = motion.speed / motion.slowest_speed;
         out[0] = (-(ratio * ratio)).exp();
     }
 }
