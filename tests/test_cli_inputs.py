@@ -173,3 +173,8 @@ def test_another_mistake_with_a_run_that_has_a_hole_is_still_a_mistake(answer, t
     assert "hole.csv" in error["where"]
     wrong = answer("diagnose", "run1.csv", "hole.csv", "--model", "rig", "--band", "60", code=3)["error"]
     assert wrong["where"] == "run1.csv"
+
+
+def test_a_folder_is_named_as_one(answer) -> None:
+    error = answer("fit", ".", "--model", "rig", code=3)["error"]
+    assert error == {"kind": "this is a folder", "where": ".", "remedy": "Name the files in it."}

@@ -48,8 +48,7 @@ def runs_with(hidden, seed, noise="50 ms", base=BASE, **motion):
     """Three hand-turned runs as luztar reads them."""
     made = simulate_rig_set(hidden, base=base, runs=3, seed=seed, noise=noise, wander_nm=0.02, motion=motion or None)
     return [
-        luztar.Run(time=r.time_s, angle=r.angle_rad, torque=r.torque_nm, name=f"run{i + 1}")
-        for i, r in enumerate(made)
+        luztar.Run(time=r.time_s, angle=r.angle_rad, torque=r.torque_nm, name=f"run{i + 1}") for i, r in enumerate(made)
     ]
 
 
@@ -105,7 +104,8 @@ def test_two_hidden_effects_are_both_added_whatever_hides_them_from_a_greedy_sea
 
 def test_what_is_outside_the_catalogue_is_not_given_a_name():
     study = luztar.study(
-        luztar.Model.rig(), runs_with({"torque_step": {"height_nm": 0.25, "angle_rad": -0.2, "width_rad": 0.03}}, seed=15)
+        luztar.Model.rig(),
+        runs_with({"torque_step": {"height_nm": 0.25, "angle_rad": -0.2, "width_rad": 0.03}}, seed=15),
     )
     assert study.verdict == "unexplained"
     assert study.named == ()

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from . import signal as signal
     from . import stats as stats
     from . import tb038 as tb038
+    from .diagnosis import compare as compare
+    from .diagnosis import diagnose as diagnose
+    from .diagnosis import fit as fit
+    from .diagnosis import study as study
     from .measurement import Run as Run
     from .measurement import Runs as Runs
     from .measurement import read as read
     from .measurement import read_frame as read_frame
     from .model import Model as Model
-    from .diagnosis import compare as compare
-    from .diagnosis import diagnose as diagnose
-    from .diagnosis import fit as fit
-    from .diagnosis import study as study
 
 _LAZY: dict[str, str] = {
     "Model": "model:Model",

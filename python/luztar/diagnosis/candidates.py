@@ -6,7 +6,9 @@ on, its loss is counted on the others.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,9 +77,7 @@ def baseline(fitted: Fit) -> Search:
     return search
 
 
-def try_all(
-    fitted: Fit, progress: Callable[[int, int], None] | None = None
-) -> tuple[list[Candidate], list[Feature]]:
+def try_all(fitted: Fit, progress: Callable[[int, int], None] | None = None) -> tuple[list[Candidate], list[Feature]]:
     """Refit a model with each possible effect.
 
     Returns
@@ -89,12 +89,13 @@ def try_all(
     """
     found, features = [], []
     listed = possible(fitted)
-    for done, c in enumerate(listed):
-        candidate, tested = _try(fitted, c)
-        found.append(candidate)
-        features += tested
-        if progress is not None:
-            progress(done + 1, len(listed))
+    # The core works outside the interpreter's lock, so that threads share the work; the order stays that of the cards.
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        for done, (candidate, tested) in enumerate(pool.map(lambda c: _try(fitted, c), listed)):
+            found.append(candidate)
+            features += tested
+            if progress is not None:
+                progress(done + 1, len(listed))
     found.sort(key=lambda c: c.held_out_loss)
     least = found[0].held_out_loss if found else 0.0
     for candidate in found:

@@ -197,5 +197,3 @@ def values_of(fitted: Fit, c: Candidate) -> dict[str, float]:
 
     assert c.search.best is not None
     return effect_values(fitted.problem, c.search.best, c.name)
-
-

@@ -154,8 +154,10 @@ def _solve(products: np.ndarray, right: np.ndarray) -> np.ndarray:
     scale = np.sqrt(np.maximum(np.diag(products), np.finfo(float).tiny))
     normal = products / np.outer(scale, scale)
     try:
-        # The condition of the scaled equations is the square of the columns'; 1e-12 leaves four digits.
-        if np.linalg.cond(normal) < 1e12:
+        factor = np.linalg.cholesky(normal)
+        # The square of the factor's smallest diagonal bounds the condition of the scaled equations, which is the square
+        # of the columns': 1e-12 leaves four digits.
+        if factor.diagonal().min() ** 2 > 1e-12:
             return np.linalg.solve(normal, right / scale) / scale
     except np.linalg.LinAlgError:
         pass

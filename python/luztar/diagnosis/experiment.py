@@ -32,7 +32,9 @@ class Experiment:
 def next_experiment(fitted: Fit, judged: Judgement) -> Experiment | None:
     """Return the test to do after a look; None where there is nothing to tell apart."""
     if judged.verdict == "too_few_strokes":
-        return Experiment("Record three runs of at least six strokes each, from beyond one end to beyond the other.", ())
+        return Experiment(
+            "Record three runs of at least six strokes each, from beyond one end to beyond the other.", ()
+        )
     return experiment_for(fitted, judged.named) if judged.named else None
 
 

@@ -182,7 +182,7 @@ def _polar(
     amplitude = _estimate(size, half_size, linear[0].unit, hidden)
     low = max(size - half_size, 0.0)
     phase = _estimate(math.atan2(b, a), min(half_phase, math.pi), linear[1].unit, hidden or half_phase >= math.pi)
-    return {keys[0]: Estimate(size, low, amplitude.high, amplitude.identifiable, amplitude.unit, amplitude.note),
-            keys[1]: phase}
-
-
+    return {
+        keys[0]: Estimate(size, low, amplitude.high, amplitude.identifiable, amplitude.unit, amplitude.note),
+        keys[1]: phase,
+    }

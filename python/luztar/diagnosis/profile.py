@@ -186,9 +186,7 @@ def _along(problem: Problem, best: State, since: Terms, visit: Callable[[State],
     return min(tried, key=lambda s: s.loss)
 
 
-def _refine_one(
-    problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None
-) -> State:
+def _refine_one(problem: Problem, best: State, name: str, i: int, visit: Callable[[State], None] | None) -> State:
     p = card(name, problem.model.structure_name).inner[i]
     grid = points(p, problem.runs)
     low, high = limits(p, problem.runs)

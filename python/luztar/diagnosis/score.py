@@ -171,7 +171,10 @@ def _scores(
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
         tables = [m[k] for m, k in zip(model_columns, keep, strict=True)]
         owners = [_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)]
-        whiten = [_whitener(r, t[:, -2], o, n, weights) for r, t, o, (_, n) in zip(runs, tables, owners, _offsets(runs), strict=True)]
+        whiten = [
+            _whitener(r, t[:, -2], o, n, weights)
+            for r, t, o, (_, n) in zip(runs, tables, owners, _offsets(runs), strict=True)
+        ]
         table = np.concatenate([w(t) for w, t in zip(whiten, tables, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
         # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor

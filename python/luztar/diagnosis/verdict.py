@@ -85,9 +85,7 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
     rivals = [c for c in found if c.name not in simpler]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:
-        return Judgement(
-            "too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed"
-        )
+        return Judgement("too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed")
     same = equivalent(rivals)
     names = tuple(c.name for c in same)
     best = rivals[0] if rivals else None
@@ -107,7 +105,9 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
             return Judgement("named", real, names, simpler, "")
         if len(real) <= LARGEST_SET:
             return Judgement("one_of", real, names, simpler, "the data do not tell these apart")
-        return Judgement("unexplained", (), names, simpler, f"{len(real)} effects explain it equally well")
+        many = f"{len(real)} effects explain it equally well: this test cannot tell"
+        word_ = "unexplained" if detection.lack_of_fit <= ALPHA else "below_practical_size"
+        return Judgement(word_, (), names, simpler, many)
     if detection.lack_of_fit <= ALPHA and fitted.error.floor_ratio > 1.0 and not few:
         return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
     if few and not worth:

@@ -125,14 +125,24 @@ def _masks(fitted: Fit) -> list[tuple[str, np.ndarray, str]]:
         ("at_rest", ~moving & (since >= AFTER_REVERSAL_S), "at rest"),
         ("low_speed", moving & (speed <= slow_limit), f"at low speed (below {pace(slow_limit)})"),
         ("high_speed", moving & (speed >= fast_limit), f"at high speed (above {pace(fast_limit)})"),
-        ("increasing", moving & (direction > 0), "while the angle increases" if rig else "while the position increases"),
-        ("decreasing", moving & (direction < 0), "while the angle decreases" if rig else "while the position decreases"),
+        (
+            "increasing",
+            moving & (direction > 0),
+            "while the angle increases" if rig else "while the position increases",
+        ),
+        (
+            "decreasing",
+            moving & (direction < 0),
+            "while the angle decreases" if rig else "while the position decreases",
+        ),
         ("early", clock < 1.0 / 3.0, "in the first third of the runs"),
         ("late", clock > 2.0 / 3.0, "in the last third of the runs"),
     ]
     edges = np.linspace(float(motion.min()), float(motion.max()), ANGLE_ZONES + 1)
     for low, high in zip(edges[:-1], edges[1:], strict=True):
-        masks.append(("angle_zone", moving & (motion >= low) & (motion <= high), f"between {place(low)} and {place(high)}"))
+        masks.append(
+            ("angle_zone", moving & (motion >= low) & (motion <= high), f"between {place(low)} and {place(high)}")
+        )
     if len(runs) > 1:
         masks += [("run", owner == i, f"in {r.name}") for i, r in enumerate(runs)]
     return masks

@@ -113,5 +113,8 @@ def study_text(study: Study) -> str:
     for s in study.steps:
         if s.next_experiment and len(s.set) > 1:
             lines.append(f"next: {s.next_experiment.text}")
-    lines += ["parameters of the last model (95 % intervals by stroke):", *parameter_lines(study.steps[-1].fit.parameters)]
+    lines += [
+        "parameters of the last model (95 % intervals by stroke):",
+        *parameter_lines(study.steps[-1].fit.parameters),
+    ]
     return "\n".join(lines)

@@ -67,7 +67,9 @@ def load(path: str | os.PathLike[str]) -> Model:
     try:
         raw = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
-        raise ModelError(f"cannot be read ({error.strerror})", os.fspath(path), "Give the path of a model file.") from None
+        raise ModelError(
+            f"cannot be read ({error.strerror})", os.fspath(path), "Give the path of a model file."
+        ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ModelError(f"is not TOML: {error}", shown, "See docs/model-files.md for an example.") from None
     try:

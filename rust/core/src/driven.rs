@@ -1,6 +1,7 @@
 //! Driven runs: the motion is given, the torque follows. A recording is prepared once; every model is then a set of
 //! columns, each through the measurement's own low pass, whose sum with coefficients is the model's torque.
 
+mod cache;
 mod columns;
 mod contact;
 mod kinematics;

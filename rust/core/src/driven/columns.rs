@@ -1,5 +1,6 @@
 //! The columns of a model: what each coefficient multiplies, filtered and decimated like the measurement.
 
+use super::cache::{Columns, Key};
 use super::contact::{engagement, friction_state, hold_at_rest};
 use super::kinematics::derivative;
 use super::recording::Recording;
@@ -94,8 +95,6 @@ impl Recording {
     /// negative gap or break-away.
     pub fn columns(&self, terms: &[Term], wanted: &[usize]) -> Result<Vec<Vec<f64>>, Error> {
         let (contact, delay_s) = self.contact(terms)?;
-        let mut state = None;
-        let mut engaged = None;
         let mut all = Vec::new();
         for index in wanted {
             let term = terms.get(*index).ok_or_else(|| Error::OutOfRange {
@@ -104,41 +103,62 @@ impl Recording {
                 interval: format!("[0, {})", terms.len()),
             })?;
             let effect = inner_of(term)?;
-            if effect.card.per_turn && self.turn_rad_per_unit.is_nan() {
-                return Err(Error::Unknown {
-                    what: "turn of",
-                    name: term.effect.clone(),
-                    known: "give the pitch".into(),
-                });
-            }
-            if effect.card.channel.is_some() && self.load_n.is_none() {
-                return Err(Error::Unknown {
-                    what: "channel of",
-                    name: term.effect.clone(),
-                    known: "record the load".into(),
-                });
-            }
-            let mut raw = self.basis(effect, &term.inner);
-            if effect.card.kind == Kind::FrictionLevel {
-                let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
-                for column in &mut raw {
-                    hold_at_rest(column, &contact, &self.seen);
-                    multiply(column, state);
-                }
-            } else if effect.card.behind_gap && contact.gap > 0.0 {
-                let state = state.get_or_insert_with(|| friction_state(&contact, &self.seen));
-                let engaged = engaged.get_or_insert_with(|| engagement(&contact, state));
-                if let Some(engaged) = engaged {
-                    for column in &mut raw {
-                        multiply(column, engaged);
-                    }
-                }
-            }
-            for column in raw {
-                all.push(self.late(&self.filtered(&column)?, delay_s));
+            self.can_make(effect)?;
+            for column in self.full_rate(effect, &term.inner, &contact)?.iter() {
+                all.push(self.late(column, delay_s));
             }
         }
         Ok(all)
+    }
+
+    /// Whether the run holds what the law looks at.
+    fn can_make(&self, effect: &Effect) -> Result<(), Error> {
+        let missing = |what, known: &str| {
+            let name = effect.card.name.to_owned();
+            Err(Error::Unknown {
+                what,
+                name,
+                known: known.to_owned(),
+            })
+        };
+        if effect.card.per_turn && self.turn_rad_per_unit.is_nan() {
+            return missing("turn of", "give the pitch");
+        }
+        if effect.card.channel.is_some() && self.load_n.is_none() {
+            return missing("channel of", "record the load");
+        }
+        Ok(())
+    }
+
+    /// The filtered columns of one effect at full rate, kept for the next model that has the same.
+    fn full_rate(
+        &self,
+        effect: &Effect,
+        inner: &[f64],
+        contact: &Contact,
+    ) -> Result<Columns, Error> {
+        let friction = effect.card.kind == Kind::FrictionLevel;
+        let behind = effect.card.behind_gap && contact.gap > 0.0;
+        let key = Key::new(
+            effect.card.name,
+            inner,
+            (friction || behind).then_some(contact),
+        );
+        self.cache.get(key, || {
+            let mut raw = self.basis(effect, inner);
+            if friction || behind {
+                let state = friction_state(contact, &self.seen);
+                if friction {
+                    for column in &mut raw {
+                        hold_at_rest(column, contact, &self.seen);
+                        multiply(column, &state);
+                    }
+                } else if let Some(engaged) = engagement(contact, &state) {
+                    raw.iter_mut().for_each(|column| multiply(column, &engaged));
+                }
+            }
+            raw.iter().map(|column| self.filtered(column)).collect()
+        })
     }
 
     /// What a shift of every start in time would add, per second of shift and unit of friction level.
@@ -151,21 +171,27 @@ impl Recording {
     /// As [`Recording::columns`].
     pub fn start_shift(&self, terms: &[Term]) -> Result<Vec<f64>, Error> {
         let (contact, delay_s) = self.contact(terms)?;
-        let rate = derivative(&friction_state(&contact, &self.seen), self.sample_rate_hz);
-        let mut near = vec![0.0; rate.len()];
-        for stroke in self.strokes() {
-            // The onset is the last sample at rest; the parabola into the first step begins before it.
-            let from = stroke.onset.saturating_sub(
-                (2.0 * START_LEAD * stroke.onset_uncertainty_s * self.sample_rate_hz).ceil()
-                    as usize,
-            );
-            let start = self.seen[stroke.onset];
-            let gone =
-                |i: &usize| (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution();
-            let to = (stroke.onset..rate.len()).find(gone).unwrap_or(rate.len());
-            near[from..to].copy_from_slice(&rate[from..to]);
-        }
-        Ok(self.late(&self.filtered(&near)?, delay_s))
+        let filtered = self
+            .cache
+            .get(Key::new("start shift", &[], Some(&contact)), || {
+                let rate = derivative(&friction_state(&contact, &self.seen), self.sample_rate_hz);
+                let mut near = vec![0.0; rate.len()];
+                for stroke in self.strokes() {
+                    // The onset is the last sample at rest; the parabola into the first step begins before it.
+                    let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
+                    let from = stroke
+                        .onset
+                        .saturating_sub((lead_s * self.sample_rate_hz).ceil() as usize);
+                    let start = self.seen[stroke.onset];
+                    let gone = |i: &usize| {
+                        (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution()
+                    };
+                    let to = (stroke.onset..rate.len()).find(gone).unwrap_or(rate.len());
+                    near[from..to].copy_from_slice(&rate[from..to]);
+                }
+                Ok(vec![self.filtered(&near)?])
+            })?;
+        Ok(self.late(&filtered[0], delay_s))
     }
 
     /// The basis of one law along the record, one vector per column.

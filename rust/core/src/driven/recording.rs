@@ -1,5 +1,6 @@
 //! One run prepared for driven fits: kinematics, strokes and the comparison's low pass.
 
+use super::cache::Cache;
 use super::kinematics::derivative;
 use super::resolution::{Resolution, span};
 use super::staircase::join_steps;
@@ -44,7 +45,7 @@ pub struct Travel {
 }
 
 /// A prepared run. Positions are rad on a rig, m on an axis; everything else follows from that.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Recording {
     pub(super) sample_rate_hz: f64,
     /// What laws see as position: smoothed.
@@ -57,6 +58,7 @@ pub struct Recording {
     pub(super) turn_rad_per_unit: f64,
     pub(super) load_n: Option<Vec<f64>>,
     pub(super) phases: Phases,
+    pub(super) cache: Cache,
     low_pass: ZeroPhase,
     already_filtered: bool,
     resolution: Resolution,
@@ -137,6 +139,7 @@ impl Recording {
             turn_rad_per_unit: travel.turn_rad_per_unit,
             load_n: load_n.map(<[f64]>::to_vec),
             phases,
+            cache: Cache::default(),
             low_pass,
             already_filtered: band.already_filtered,
             resolution,
