@@ -34,6 +34,7 @@ def ladder(study: Study) -> Any:
     floor, steps = study.noise_floor, study.steps
     errors = [s.fit.error for s in steps]
     labels = [step_label(s, study) for s in steps]
+    top = max([e.held_out_rms for e in errors] + [floor.high])
     picture.add_bar(
         orientation="h",
         x=numbers(e.held_out_rms for e in errors),
@@ -57,11 +58,10 @@ def ladder(study: Study) -> Any:
             "text": f"noise floor {rounded(floor.rms)} ({rounded(floor.low)} to {rounded(floor.high)}) {floor.unit}",
             "font": {"color": "#00694D"},
             "yanchor": "bottom",
-            "xanchor": "left",
+            "xanchor": "left" if floor.rms < 0.5 * top else "right",
         },
         annotation_position="top",
     )
-    top = max([e.held_out_rms for e in errors] + [floor.high])
     # Room for the words at the end of the longest bar.
     picture.update_xaxes(range=[0.0, 1.3 * top], title_text=f"unseen error, rms [{floor.unit}] (% of the measurement)")
     picture.update_yaxes(

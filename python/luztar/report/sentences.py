@@ -94,11 +94,13 @@ def error_sentence(study: Study) -> str:
     first, last = study.steps[0].fit.error, study.steps[-1].fit.error
     floor = study.noise_floor
     limit = f"the noise floor is {rounded(floor.rms)} {floor.unit} ({rounded(floor.low)} to {rounded(floor.high)})"
+    if last.held_out_rms < floor.low:
+        limit += "; the error lies below it, so this estimate of the floor is too high"
     if len(study.steps) == 1:
         return (
-            f"The model misses torque it has not seen by {rounded(first.held_out_rms)} {first.unit} rms "
-            f"({100 * first.held_out_relative:.1f} % of the measurement); {limit}."
-        ).replace("torque", study.model.structure.effort)
+            f"The model misses {study.model.structure.effort} it has not seen by {rounded(first.held_out_rms)} "
+            f"{first.unit} rms ({100 * first.held_out_relative:.1f} % of the measurement); {limit}."
+        )
     return (
         f"The unseen error falls from {rounded(first.held_out_rms)} to {rounded(last.held_out_rms)} {first.unit} rms "
         f"({100 * first.held_out_relative:.1f} to {100 * last.held_out_relative:.1f} % of the measurement); {limit}."
