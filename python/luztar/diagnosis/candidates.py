@@ -99,7 +99,9 @@ def try_all(fitted: Fit, progress: Callable[[int, int], None] | None = None) -> 
                 progress(done + 1, len(listed))
     found.sort(key=lambda c: c.held_out_loss)
     least = found[0].held_out_loss if found else 0.0
-    for candidate in found:
+    # Where even the best takes next to nothing off, refining changes no answer.
+    worth = least < (1.0 - 0.5 * PRACTICAL_GAIN) ** 2 * baseline(fitted).held_out_loss
+    for candidate in found if worth else ():
         # What changes the contact or the delay may have bent the break-away of the model without it: both are refined.
         bends = candidate.card.shapes_others
         if candidate.card.inner and candidate.held_out_loss <= (BENT_WITHIN if bends else REFINED_WITHIN) * least:
