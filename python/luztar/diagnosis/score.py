@@ -117,8 +117,8 @@ def detect(
     start_shift, start_bound : float
         The fitted coefficient of the common shift of the starts (the last column) and the most it may be.
     gains : ndarray, shape (strokes, candidates), optional
-        By how much each candidate lowers the held-out loss of every stroke. If nothing is missing a gain is as likely as
-        a loss, or less likely: this sees what the score, which looks near zero only, does not.
+        By how much each candidate lowers the held-out loss of every stroke. If nothing is missing a gain is as likely
+        as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
     features = [*candidates, *cells(runs)]
