@@ -100,7 +100,9 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
     if worth and best is not None:
         if best.card.is_decoy:
             return Judgement("unexplained", (), names, simpler, "a decoy without physics explains it best")
-        real = tuple(c.name for c in same if not c.card.is_decoy)
+        # With few strokes a standard error says little: a rival counts if it, too, gains in every fold.
+        rest = [c for c in same if not few or worth_with_few(fitted, c, rivals)]
+        real = tuple(c.name for c in rest if not c.card.is_decoy)
         if len(real) == 1:
             return Judgement("named", real, names, simpler, "")
         if len(real) <= LARGEST_SET:
