@@ -1,4 +1,4 @@
-"""Run cases in processes; every finished one is a line in a file, so that a stopped calibration goes on where it was."""
+"""Run cases in processes; every finished one is a line in a file, so that a calibration can be stopped and go on."""
 
 from __future__ import annotations
 
