@@ -173,9 +173,9 @@ def cases(
             listed += [Case(e, s, n, i, settings) for s in sizes for n in noises for e in effects]
         if i < (per_effect if outside_each is None else outside_each):
             listed += [Case(e, 1.0, n, i, settings) for n in noises for e in outside]
+    # False alarms are the rate that matters most: ten times as many records with nothing hidden.
+    for i in range(min(nulls, 10 * peers)):
+        listed += [Case(NOTHING, 0.0, noise, i, settings, peers=True) for noise in noises]
     for i in range(peers):
-        for noise in noises:
-            listed += [Case(e, sizes[0], noise, i, settings, peers=True) for e in (NOTHING, *effects, *outside)]
-    return [
-        Case(c.effect, 0.0, c.noise, c.number, settings, True) if c.peers and c.kind == "null" else c for c in listed
-    ]
+        listed += [Case(e, 1.0, n, i, settings, peers=True) for n in noises for e in (*effects, *outside)]
+    return listed
