@@ -108,8 +108,8 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
         if len(real) <= LARGEST_SET:
             return Judgement("one_of", real, names, simpler, "the data do not tell these apart")
         many = f"{len(real)} effects explain it equally well: this test cannot tell"
-        word_ = "unexplained" if detection.lack_of_fit <= ALPHA else "below_practical_size"
-        return Judgement(word_, (), names, simpler, many)
+        unexplained = detection.lack_of_fit <= ALPHA and not few
+        return Judgement("unexplained" if unexplained else "below_practical_size", (), names, simpler, many)
     if detection.lack_of_fit <= ALPHA and fitted.error.floor_ratio > 1.0 and not few:
         return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
     if few and not worth:
