@@ -1,23 +1,23 @@
-"""Which kind of test rejects: candidates outside and inside the reversal zones, cells of state, time and travel."""
+"""Which kind of test rejects: candidates outside and inside the reversal zones, cells, gain on unseen strokes."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from luztar.diagnosis.candidates import try_all
-from luztar.diagnosis.chance import p_values, signs, studentised
+from luztar.diagnosis.candidates import baseline, try_all
+from luztar.diagnosis.chance import one_sided, p_values, signs, studentised
 from luztar.diagnosis.fit import Fit
 from luztar.diagnosis.jacobian import continuous, jacobian
 from luztar.diagnosis.score import _scores, cells
 
 CELLS = ("state", "time", "reversal")
-FAMILIES = ("candidates outside zones", "candidates inside zones", *CELLS)
+FAMILIES = ("candidates outside zones", "candidates inside zones", *CELLS, "gain on unseen strokes")
 
 
 def families(fitted: Fit) -> dict[str, tuple[float, str]]:
     """Return a p-value per family, adjusted inside it and not across families, and what is strongest in it."""
     problem, state = fitted.problem, fitted.state
-    _, features = try_all(fitted)
+    found, features = try_all(fitted)
     features = [*features, *cells(problem.runs)]
     made = jacobian(problem, state, continuous(problem, state, sharpness=True))
     shift, bound = float(state.coefficients[-1]), state.blocks.bound
@@ -42,4 +42,9 @@ def families(fitted: Fit) -> dict[str, tuple[float, str]]:
         single = p_values(np.column_stack(drawn))
         adjusted = float(p_values(-single.min(axis=1)[:, None])[0, 0])
         out[family] = (adjusted, names[int(np.argmin(single[0]))])
+    before = baseline(fitted).losses
+    gains = np.column_stack([before - c.search.losses for c in found])
+    drawn_gain = one_sided(gains, flips)
+    best = found[int(np.argmax(drawn_gain[0]))].name
+    out[FAMILIES[-1]] = (float(p_values(drawn_gain.max(axis=1)[:, None])[0, 0]), best)
     return out
