@@ -48,7 +48,7 @@ of 0.02 degrees, white noise of 0.05 Nm, hum, and a slow wander of {s.wander_nm:
 0.5 s, or none ("white"). Every case has its own rig, hand and noise; sizes lie within a factor of 1.25 around the
 [table](#typical-sizes), times the size factor. {s.runs} runs of {s.strokes} strokes each, at 500 Hz.
 
-This page is written by `python -m benches.hidden_effects` (`PYTHONPATH` needs nothing; matplotlib, lmfit and pysindy
+This page is written by `python -m benches.hidden_effects` (matplotlib, lmfit and pysindy
 are needed for pictures and peers only). It can be stopped and goes on where it was. Cases on this page:
 {counts["null"]} with nothing hidden, {counts["effect"]} with an effect of the catalogue, {counts["outside"]} with one
 outside it, all with one version of the method (`{s.method}`). Brackets hold Wilson's 95 % interval."""

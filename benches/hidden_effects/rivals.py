@@ -21,7 +21,9 @@ def cosines(case: Case, measured: Measured, floor: NoiseFloor) -> dict[str, floa
     start = case.start()
     fitted = fit_prepared(start, prepare(measured.clean, start), (), floor)
     found, _ = try_all(fitted)
-    losses = {c.name: c.search.loss for c in found if not c.card.is_decoy}
+    # A candidate that is always folded into what is hidden (another word for it) is no rival.
+    same = {c.name for c in found if c.card.becomes in case.right and not c.card.inner}
+    losses = {c.name: c.search.loss for c in found if not c.card.is_decoy and c.name not in same}
     least = min((losses[n] for n in case.right if n in losses), default=math.nan)
     whole = fitted.search.loss - least
     if not whole > 0.0:
