@@ -13,7 +13,7 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 
-from .cases import NOISES, OUTSIDE  # noqa: E402
+from .cases import EFFECTS, NOISES, OUTSIDE  # noqa: E402
 from .tally import Rate, Record, coverage, of_kind, rate  # noqa: E402
 
 BLUE, ORANGE, GREY, GREEN = "#2458a6", "#c8641b", "#9aa3ad", "#3d8b57"
@@ -45,10 +45,10 @@ def _whisker(axes: Axes, y: float, found: Rate, colour: str, label: str | None =
 
 def _names(records: Sequence[Record]) -> plt.Figure | None:
     mine = of_kind(records, "effect")
-    outside = [r for r in of_kind(records, "outside")]
+    outside = of_kind(records, "outside")
     if not mine:
         return None
-    effects = list(dict.fromkeys(r["effect"] for r in mine))
+    effects = [e for e in EFFECTS if any(r["effect"] == e for r in mine)]
     sizes = sorted({r["size"] for r in mine}, reverse=True)
     rows = len(effects) + (len(OUTSIDE) if outside else 0)
     figure, all_axes = plt.subplots(1, len(sizes), figsize=(2.9 * len(sizes) + 1.6, 0.24 * rows + 1.1), sharey=True)
@@ -73,7 +73,7 @@ def _names(records: Sequence[Record]) -> plt.Figure | None:
     first.set_yticks(range(len(shown)), [e.replace("_", " ") for e in shown])
     first.invert_yaxis()
     figure.legend(
-        *first.get_legend_handles_labels(), loc="upper center", ncol=3, frameon=False, bbox_to_anchor=(0.5, 0)
+        *first.get_legend_handles_labels(), loc="upper center", ncol=3, frameon=False, bbox_to_anchor=(0.5, 0.05)
     )
     return figure
 
