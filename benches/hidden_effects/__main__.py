@@ -40,7 +40,7 @@ def main(given: list[str] | None = None) -> int:
     if options.fast:
         options.nulls, options.per_effect, options.outside, options.peers = 1, 1, [], 0
         options.effects, options.sizes, options.noises = ["stiffness"], [1.0], ["50 ms"]
-    from .cases import Settings, cases, method_digest
+    from .cases import Settings, cases, method_digest, peers_digest
     from .pool import finished, run_all
 
     settings = Settings(method=method_digest())
@@ -62,7 +62,8 @@ def main(given: list[str] | None = None) -> int:
         from .page import write
 
         # Everything this version of the method has finished, also what other options asked for.
-        mine = [r for r in finished(path).values() if r["peers"] or r["key"].endswith(settings.method)]
+        ends = (f"luztar {settings.method}", f"peers {peers_digest()}")
+        mine = [r for r in finished(path).values() if r["key"].endswith(ends)]
         write(mine, settings, options.docs)
         sys.stderr.write(f"{len(mine)} cases on {options.docs / 'validation.md'}\n")
     return 0

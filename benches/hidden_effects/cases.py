@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import sys
 import zlib
@@ -66,7 +67,7 @@ class Case:
     def key(self) -> str:
         """What identifies a finished case in the file of results."""
         s = self.settings
-        what = "peers" if self.peers else f"luztar {s.method}"
+        what = f"peers {peers_digest()}" if self.peers else f"luztar {s.method}"
         shared = f"{s.runs} runs of {s.strokes} strokes, wander {s.wander_nm:g}"
         return f"{self.effect} | {self.size:g} | {self.noise} | {self.number} | {shared} | {what}"
 
@@ -140,6 +141,12 @@ def _as_runs(raw: Sequence[RigRun], *, clean: bool) -> list[luztar.Run]:
         torque = r.clean_torque_nm if clean else r.torque_nm
         made.append(luztar.Run(time=r.time_s, angle=r.angle_rad, torque=torque, name=f"run{i}", **load))
     return made
+
+
+@functools.cache
+def peers_digest() -> str:
+    """Return a short digest of how the other programs are used."""
+    return hashlib.sha256(Path(__file__).with_name("peers.py").read_bytes()).hexdigest()[:8]
 
 
 def method_digest() -> str:

@@ -68,7 +68,7 @@ def _targets(records: Sequence[Record]) -> str:
                 if inside
                 else (above < low or below > high)
             )
-            met = ("yes" if inside else "no") + ("" if sure else ", not yet certain")
+            met = ("yes" if inside else "no") if sure else ("open, so far yes" if inside else "open, so far no")
         rows.append((what, target, found, met))
 
     null = of_kind(records, "null")

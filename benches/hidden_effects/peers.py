@@ -20,6 +20,7 @@ from .cases import Measured
 
 BAND_HZ, ANGLE_BAND_HZ, RATE_HZ, EVERY = 6.0, 20.0, 100.0, 2
 LEAST_SPEED_RAD_S = math.radians(3.0)
+REST_SPEED_RAD_S = math.radians(0.3)
 THRESHOLD = 0.1  # PySINDy's own default for STLSQ
 VERY_STRONG = -10.0  # difference of BIC, Kass and Raftery 1995
 PROGRAMS = {"PySINDy": "pysindy", "lmfit + BIC": "lmfit"}
@@ -132,13 +133,13 @@ def _dahl(r: Samples, breakaway: float) -> np.ndarray:
         way = 1.0 if dx > 0 else -1.0
         s = way - (way - s) * math.exp(-abs(dx))
         state[i] = s
-    return state - np.sign(r.speed)
+    return state - _sign(r)
 
 
 def _gap(r: Samples, width: float) -> np.ndarray:
     """Return what a gap takes off Coulomb friction: all of it while the gap is open."""
     open_ = np.abs(_stop(r.angle, 0.5 * max(width, 1e-3))) < 0.999
-    return -np.sign(r.speed) * open_
+    return -_sign(r) * open_
 
 
 def _bell(x: np.ndarray, at: float, width: float) -> np.ndarray:
@@ -207,7 +208,10 @@ def lmfit_best(runs: list[Samples]) -> list[str]:
 
 
 def _sign(r: Samples) -> np.ndarray:
-    return np.sign(r.speed)
+    """Return the direction of the last motion: friction at rest holds its torque."""
+    way = np.sign(np.where(np.abs(r.speed) > REST_SPEED_RAD_S, r.speed, 0.0))
+    last = np.maximum.accumulate(np.where(way != 0.0, np.arange(way.size), 0))
+    return way[last]
 
 
 def _speed(r: Samples) -> np.ndarray:

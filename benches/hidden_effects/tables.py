@@ -166,12 +166,16 @@ def peers(records: Sequence[Record]) -> str:
         row(f"the same, only effects that {p} can express ({len(can[p])})", chosen, "right")
     row("outside the catalogue: an effect is named all the same", [b for b in both if b[0]["kind"] == "outside"], "any")
     absent = [p for p in PROGRAMS if p not in programs]
-    note = f"\n\nNot installed where this page was made: {', '.join(absent)}." if absent else ""
+    said = {p: Counter(n for t in theirs if t["kind"] == "null" for n in t["found"].get(p, [])) for p in programs}
+    what = "; ".join(f"{p}: {', '.join(f'{n} {k}' for n, k in c.most_common(3)) or 'nothing'}" for p, c in said.items())
+    note = f"\n\nNamed where nothing is hidden: {what}."
+    note += f"\n\nNot installed where this page was made: {', '.join(absent)}." if absent else ""
     return (
         "## Other programs\n\nThe same records, the same low pass on torque and regressors, 50 samples per second, "
         "only samples that move (above 3 degrees/s).\n"
         "PySINDy: STLSQ with threshold 0.1 on the terms 1, sign v, v, |v|, v|v|, x, x³, sin x, cos x,\n"
-        "exp(-(v/0.1)²) sign v; named is every effect whose term it keeps. lmfit: each candidate refitted alone, the\n"
+        "exp(-(v/0.1)²) sign v; named is every effect whose term it keeps. "
+        "lmfit: friction held at rest, each candidate refitted alone, the\n"
         "best named where its BIC is lower by more than 10. Their rates of right names count only\n"
         "effects that they can express; luztar's count all.\n\n" + table(("Case", "luztar", *programs), rows) + note
     )
