@@ -105,7 +105,7 @@ def test_two_hidden_effects_are_both_added_whatever_hides_them_from_a_greedy_sea
 def test_what_is_outside_the_catalogue_is_not_given_a_name():
     study = luztar.study(
         luztar.Model.rig(),
-        runs_with({"torque_step": {"height_nm": 0.25, "angle_rad": -0.2, "width_rad": 0.03}}, seed=15),
+        runs_with({"torque_step": {"amplitude_nm": 0.2, "angle_rad": -0.2, "width_rad": 0.03}}, seed=15),
     )
     assert study.verdict == "unexplained"
     assert study.named == ()

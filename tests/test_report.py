@@ -202,7 +202,7 @@ def test_inputs_settings_and_versions_are_there(study: Study, tmp_path: Path) ->
             "Missing from the model: stiffness (spring) or once-per-turn torque; this measurement cannot tell which.",
         ),
         ("too_few_strokes", (), "There are too few strokes to say whether anything is missing."),
-        ("below_practical_size", (), "nothing that would change the prediction by 1 %"),
+        ("below_practical_size", (), "this measurement can neither name it"),
         ("unexplained", (), "Something is missing that no effect of the catalogue explains."),
     ],
 )

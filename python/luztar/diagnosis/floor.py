@@ -110,8 +110,10 @@ def saturated(runs: Sequence[Prepared]) -> list[np.ndarray]:
         speed = hats(np.abs(r.speed), speed_knots)[:, 1:]
         travel = hats(travel_since_reversal(r), travel_knots)[:, :-1]
         time = (r.time_s / longest)[:, None]
-        slow = np.hstack([time, s * time, r.acceleration[:, None]])
-        made.append(np.hstack([place, s * place, speed, s * speed, s * travel, slow]))
+        slow = np.hstack([time, s * time])
+        # What changes within the filter's memory has to go through the filter; the hats change slowly.
+        quick = r.recording.columns([("viscous", []), ("inertia", [])], [0, 1]).T
+        made.append(np.hstack([place, s * place, speed, s * speed, s * travel, slow, quick]))
     return made
 
 

@@ -92,8 +92,8 @@ class Study:
 
     @property
     def verdict(self) -> str:
-        """The verdict of the last look; ``named`` cannot stand at the end of a loop that stops at a limit."""
-        return self.last.verdict
+        """The verdict of the last look; ``unexplained`` where four effects were added and more are called for."""
+        return "unexplained" if any(s.provisional for s in self.steps) else self.last.verdict
 
     @property
     def named(self) -> tuple[str, ...]:
@@ -193,20 +193,32 @@ def climb(loop: _Loop, max_effects: int) -> tuple[list[Step], list[Diagnosis]]:
     added: list[str] = []
     offered: dict[str, tuple[str, ...]] = {}
     seen = {frozenset(added)}
-    while looks[-1].named and len(added) < max_effects:
-        name = looks[-1].named[0]
-        offered[name] = looks[-1].named
-        added.append(name)
-        fitted = loop.fit(_with(fitted, looks[-1], name))
-        fitted, added = _without_needless(loop, fitted, added)
+    while True:
+        while looks[-1].named and len(added) < max_effects:
+            name = looks[-1].named[0]
+            offered[name] = looks[-1].named
+            added.append(name)
+            fitted = loop.fit(_with(fitted, looks[-1], name))
+            fitted, added = _without_needless(loop, fitted, added)
+            if frozenset(added) in seen:
+                break
+            seen.add(frozenset(added))
+            looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
+        # A mechanism that calls for a fifth effect is one that the catalogue does not describe: its curves are being
+        # pieced together from those of others. A smaller limit is the user's, and what was added until then stands.
+        exhausted = bool(looks[-1].named) and len(added) >= MAX_EFFECTS
+        unexplained = looks[-1].verdict == "unexplained" or exhausted
+        if unexplained or looks[-1].named or len(added) < 2:
+            break
+        before = frozenset(added)
+        fitted, added, offered = _simplest(loop, fitted, added, offered)
+        if frozenset(added) == before:
+            fitted, added, offered = _each_in_its_place(loop, fitted, added, looks)
+            break
         if frozenset(added) in seen:
             break
         seen.add(frozenset(added))
         looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
-    fitted, added, offered = _simplest(loop, fitted, added, offered)
-    unexplained = looks[-1].verdict == "unexplained" or bool(looks[-1].named)
-    if len(added) > 1 and not unexplained:
-        fitted, added, offered = _each_in_its_place(loop, fitted, added, looks)
     return _ladder(loop, fitted, added, offered, unexplained), looks
 
 

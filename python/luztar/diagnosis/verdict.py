@@ -100,14 +100,16 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
     if worth and best is not None:
         if best.card.is_decoy:
             return Judgement("unexplained", (), names, simpler, "a decoy without physics explains it best")
-        real = tuple(c.name for c in same if not c.card.is_decoy)
+        # With few strokes a standard error says little: a rival counts if it, too, gains in every fold.
+        rest = [c for c in same if not few or worth_with_few(fitted, c, rivals)]
+        real = tuple(c.name for c in rest if not c.card.is_decoy)
         if len(real) == 1:
             return Judgement("named", real, names, simpler, "")
         if len(real) <= LARGEST_SET:
             return Judgement("one_of", real, names, simpler, "the data do not tell these apart")
         many = f"{len(real)} effects explain it equally well: this test cannot tell"
-        word_ = "unexplained" if detection.lack_of_fit <= ALPHA else "below_practical_size"
-        return Judgement(word_, (), names, simpler, many)
+        unexplained = detection.lack_of_fit <= ALPHA and not few
+        return Judgement("unexplained" if unexplained else "below_practical_size", (), names, simpler, many)
     if detection.lack_of_fit <= ALPHA and fitted.error.floor_ratio > 1.0 and not few:
         return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
     if few and not worth:

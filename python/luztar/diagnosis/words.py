@@ -62,7 +62,7 @@ VERDICT_TEXT = {
     "one_of": "Missing: one of {named}; this test cannot tell which.",
     "unexplained": "Something is missing that no effect of the catalogue explains.",
     "too_few_strokes": "Too few strokes to say anything.",
-    "below_practical_size": "Something may be missing, but nothing that would change the prediction by 1 %.",
+    "below_practical_size": "Something may be missing, but this test can neither name it nor show a gain worth having.",
 }
 
 

@@ -49,7 +49,7 @@ def verdict(study: Study) -> str:
             "named": f"Missing from the model: {names}.",
             "one_of": f"Missing from the model: {names}; this measurement cannot tell which.",
             "too_few_strokes": "There are too few strokes to say whether anything is missing.",
-            "below_practical_size": "Something may be missing, but nothing that would change the prediction by 1 %.",
+            "below_practical_size": "Something may be missing, but this measurement can neither name it nor show a gain worth having.",
         }[study.verdict]
     return f"Missing from the model: {found}. {_end(study)}"
 
@@ -75,7 +75,7 @@ def _end(study: Study) -> str:
     it = "it" if len(study.steps) == 2 else "them"
     return {
         "nothing_missing": f"With {it}, nothing is missing that this measurement can show.",
-        "below_practical_size": f"With {it}, what is left would not change the prediction by 1 %.",
+        "below_practical_size": f"With {it}, what is left can neither be named nor is it worth having.",
         "too_few_strokes": "There are too few strokes to say more.",
     }.get(study.verdict, "")
 

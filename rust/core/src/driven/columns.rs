@@ -154,7 +154,9 @@ impl Recording {
                         multiply(column, &state);
                     }
                 } else if let Some(engaged) = engagement(contact, &state) {
-                    raw.iter_mut().for_each(|column| multiply(column, &engaged));
+                    for column in &mut raw {
+                        multiply(column, &engaged);
+                    }
                 }
             }
             raw.iter().map(|column| self.filtered(column)).collect()

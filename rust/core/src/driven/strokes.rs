@@ -48,10 +48,14 @@ impl Phases {
                 .take_while(|x| (**x - start).abs() <= step)
                 .count();
             let end = strokes.get(k + 1).map_or(n, |next| next.onset);
-            for i in stroke.onset..end {
-                phases.rest_s[i] = rest as f64 / sample_rate_hz;
-                phases.travelled[i] = (seen[i] - start).abs() / range;
-                phases.direction[i] = stroke.direction;
+            let inside = stroke.onset..end;
+            phases.rest_s[inside.clone()].fill(rest as f64 / sample_rate_hz);
+            phases.direction[inside.clone()].fill(stroke.direction);
+            for (travelled, x) in phases.travelled[inside.clone()]
+                .iter_mut()
+                .zip(&seen[inside])
+            {
+                *travelled = (x - start).abs() / range;
             }
         }
         phases

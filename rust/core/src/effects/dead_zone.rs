@@ -16,7 +16,7 @@ impl Law for DeadZone {
         cause: "Cable or hose that becomes tight, centring with play.",
         check: "Route cables freely; look where the slope begins.",
         typical: "0.2 to 1 Nm/rad beyond 10 to 40 degrees",
-        source: "paper eq. (3)",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eq. (3)",
         parameters: &[
             Parameter {
                 key: "stiffness_nm_per_rad",

@@ -16,7 +16,7 @@ impl Law for EndStop {
         cause: "Steering lock, cable end, robot tie-down touching.",
         check: "Keep away from the lock; check the tie-down (TB 038 Annex I step 3).",
         typical: "2 Nm/rad and more",
-        source: "paper eq. (3), unilateral",
+        source: "Wieckowski and Zardecki, Influence of freeplay and friction in steering system on double lane change manoeuvre, eq. (3), unilateral",
         parameters: &[
             Parameter {
                 key: "stiffness_nm_per_rad",
