@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -80,7 +81,8 @@ class Diagnosis:
     candidates : tuple of Tried
         By held-out error, decoys among them.
     detection : Detection
-    next_experiment : Experiment or None
+    found : tuple of Candidate
+        The same candidates with their states.
     """
 
     fit: Fit
@@ -89,7 +91,6 @@ class Diagnosis:
     map: Map = field(repr=False)
     candidates: tuple[Tried, ...]
     detection: Detection
-    next_experiment: Experiment | None
     found: tuple[Candidate, ...] = field(repr=False, default=())
 
     @property
@@ -101,6 +102,11 @@ class Diagnosis:
     def named(self) -> tuple[str, ...]:
         """The effect named, or the set under ``one_of``."""
         return self.judgement.named
+
+    @functools.cached_property
+    def next_experiment(self) -> Experiment | None:
+        """The test that would tell apart what this measurement could not; simulated when it is first asked for."""
+        return next_experiment(self.fit, self.judgement, self.found)
 
     @property
     def parameters(self) -> dict[str, Estimate]:
@@ -167,7 +173,6 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         map=residual_map(fitted),
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
-        next_experiment=next_experiment(fitted, judged),
         found=tuple(found),
     )
 

@@ -12,7 +12,7 @@ from ..measurement import Run
 from ..model import Model
 
 # Samples per period of the band's upper edge. The kinematics keep 2.5 times the band, which wants more than 11.
-SAMPLES_PER_BAND_PERIOD = 30.0
+SAMPLES_PER_BAND_PERIOD = 24.0
 
 
 @dataclass(frozen=True)

@@ -129,9 +129,9 @@ def rig_trials() -> tuple[Trial, ...]:
         ),
         Trial(
             "longer",
-            "Record the usual strokes for longer: twenty-four strokes a run of different speed, 5 to 38 degrees per "
+            "Record the usual strokes for longer: sixteen strokes a run of different speed, 5 to 38 degrees per "
             "second",
-            _turned(-window, window, usual, 24, overshoot=8.0 * DEG),
+            _turned(-window, window, usual, 16, overshoot=8.0 * DEG),
         ),
     )
 
@@ -176,7 +176,7 @@ def axis_trials(low: float, high: float, top_speed: float) -> tuple[Trial, ...]:
         ),
         Trial(
             "longer",
-            "Record the usual strokes over the whole range for longer: twenty-four strokes a run of different speed",
-            _turned(low, high, usual, 24),
+            "Record the usual strokes over the whole range for longer: sixteen strokes a run of different speed",
+            _turned(low, high, usual, 16),
         ),
     )
