@@ -129,8 +129,7 @@ def rig_trials() -> tuple[Trial, ...]:
         ),
         Trial(
             "longer",
-            "Record the usual strokes for longer: sixteen strokes a run of different speed, 5 to 38 degrees per "
-            "second",
+            "Record the usual strokes for longer: sixteen strokes a run of different speed, 5 to 38 degrees per second",
             _turned(-window, window, usual, 16, overshoot=8.0 * DEG),
         ),
     )
