@@ -59,7 +59,11 @@ def _turned(
 
 
 def as_planned(
-    amplitude: float, speeds: tuple[float, float], count: int, overshoot: float | None = None
+    amplitude: float,
+    speeds: tuple[float, float],
+    count: int,
+    overshoot: float | None = None,
+    ladder: tuple[float, ...] = (),
 ) -> Callable[[float, int], np.ndarray]:
     """Return the motion of plain strokes beyond plus and minus an amplitude.
 
@@ -73,9 +77,11 @@ def as_planned(
         Strokes in a run.
     overshoot : float, optional
         By how much strokes go beyond; 15 % where not given.
+    ladder : tuple of float
+        Even speeds in place of the range, two strokes each.
     """
     beyond = 0.15 * amplitude if overshoot is None else overshoot
-    return _turned(-amplitude, amplitude, speeds, count, overshoot=beyond)
+    return _turned(-amplitude, amplitude, None if ladder else speeds, count, ladder=ladder, overshoot=beyond)
 
 
 def rig_trials() -> tuple[Trial, ...]:
