@@ -39,9 +39,9 @@ class Move:
 
 
 def ramp(u: np.ndarray) -> np.ndarray:
-    """Return 0 to 1 over u in [0, 1], with no slope at the ends."""
+    """Return 0 to 1 over u in [0, 1] with no slope and no curvature at the ends: least jerk, as a hand moves."""
     u = np.clip(u, 0.0, 1.0)
-    return u * u * (3.0 - 2.0 * u)
+    return u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 
 
 def _profile(travel: float, speed: float, step_s: float, rng: np.random.Generator) -> np.ndarray:

@@ -14,7 +14,7 @@ from ..errors import ParameterError
 from ..model import Model, card
 from .rehearse import Sensor, minutes, planning_rate_hz, rehearse
 from .signatures import Signatures, signatures
-from .sizes import CONFUSABLE, Pair, Smallest, confusable, needed_errors, smallest
+from .sizes import CONFUSABLE, Pair, Smallest, chance_errors, confusable, gain_errors, smallest
 from .trials import Trial, as_planned, axis_trials, rig_trials
 from .typical import SOUND
 
@@ -43,8 +43,8 @@ class Plan:
     minutes : float
         Of all runs together.
     sensor : Sensor
-    errors : float
-        Standard errors that an effect needs to be named.
+    chance_errors, gain_errors : float
+        Standard errors that an effect needs to stand out from chance, and that it has where it takes 1 % off the error.
     sizes : tuple of Smallest
         One entry per effect of the catalogue.
     pairs : tuple of Pair
@@ -60,7 +60,8 @@ class Plan:
     strokes: int
     minutes: float
     sensor: Sensor
-    errors: float
+    chance_errors: float
+    gain_errors: float
     sizes: tuple[Smallest, ...]
     pairs: tuple[Pair, ...]
     effects: tuple[str, ...]
@@ -85,7 +86,8 @@ class Plan:
                     "unit": self.model.structure.effort_unit,
                 },
             },
-            "standard_errors": self.errors,
+            "chance_errors": self.chance_errors,
+            "gain_errors": self.gain_errors,
             "sizes": [s.to_dict() for s in self.sizes],
             "pairs": [p.to_dict() for p in self.pairs],
             "cosines": {
@@ -235,7 +237,8 @@ def plan(
         strokes=table.strokes,
         minutes=table.minutes,
         sensor=sensor,
-        errors=needed_errors(table, sensor),
+        chance_errors=chance_errors(table.strokes),
+        gain_errors=gain_errors(table, sensor),
         sizes=smallest(table, sensor),
         pairs=_pairs(table, others, sensor, sound),
         effects=names,

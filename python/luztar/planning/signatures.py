@@ -8,6 +8,7 @@ explains is taken off (a Schur complement); lengths and angles between what is l
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +20,7 @@ from ..diagnosis.prepare import Prepared
 from ..diagnosis.profile import owners
 from ..diagnosis.terms import Terms, inner_grid, start_terms
 from ..model import Card, Model, cards
-from .rehearse import Sensor, every_stroke
+from .rehearse import Sensor, every_stroke, minutes
 from .typical import Reach, typical_inner
 
 # Beyond this many points of a grid neighbours are the same within a per cent of the effect's power.
@@ -58,6 +59,10 @@ class Signatures:
         the square of the standard errors of an effect of size one.
     typical : mapping of str to Variant
     grid : mapping of str to tuple of Variant
+    moving : mapping of str to float
+        Standard errors of the typical variant of size one away from reversals, where the tests of chance look.
+    start_s : float
+        By how much the instant of a start is uncertain.
     strokes, samples : int
     minutes : float
     """
@@ -66,6 +71,8 @@ class Signatures:
     products: np.ndarray = field(repr=False)
     typical: Mapping[str, Variant] = field(repr=False)
     grid: Mapping[str, tuple[Variant, ...]] = field(repr=False)
+    moving: Mapping[str, float] = field(repr=False)
+    start_s: float
     strokes: int
     samples: int
     minutes: float
@@ -77,8 +84,7 @@ class Signatures:
 
     def strength(self, variant: Variant) -> float:
         """Return the standard errors of a variant of size one; of the worse phase where it has one."""
-        block = self.products[variant.at, variant.at]
-        return math.sqrt(max(0.0, float(np.linalg.eigvalsh(block)[0])))
+        return _weakest(self.products[variant.at, variant.at])
 
     def cosine(self, effect: str, rival: str) -> float:
         """Return how well a rival can imitate an effect at its typical inner parameters.
@@ -86,25 +92,37 @@ class Signatures:
         1 where the rival, at the best of its own inner parameters and sizes, leaves nothing of it; of an effect with a
         phase, at the phase that is imitated best.
         """
-        mine = self.typical[effect]
-        return max((self.alike(mine, other) for other in self.grid[rival]), default=0.0)
+        if (effect, rival) not in self._cosines:
+            mine = self.typical[effect]
+            self._cosines[effect, rival] = max((self.alike(mine, other) for other in self.grid[rival]), default=0.0)
+        return self._cosines[effect, rival]
 
     def alike(self, a: Variant, b: Variant) -> float:
         """Return the cosine of the smallest angle between what two variants add to what the model explains."""
-        left, right = _root(self.products[a.at, a.at]), _root(self.products[b.at, b.at])
-        if left is None or right is None:
-            return 0.0
-        between = np.linalg.solve(left, self.products[a.at, b.at])
-        between = np.linalg.solve(right, between.T)
+        between = self._directions[a.at, b.at]
+        if between.size == 1:
+            return min(1.0, abs(float(between[0, 0])))
         return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
 
+    @functools.cached_property
+    def _cosines(self) -> dict[tuple[str, str], float]:
+        return {}
 
-def _root(block: np.ndarray) -> np.ndarray | None:
-    """Return the Cholesky factor of a small block; None where nothing is left of it."""
-    try:
-        return np.linalg.cholesky(block)
-    except np.linalg.LinAlgError:
-        return None
+    @functools.cached_property
+    def _directions(self) -> np.ndarray:
+        """The products of all columns made orthonormal within each variant; nothing where nothing is left of it."""
+        whiten = np.zeros_like(self.products)
+        for variant in (v for grid in self.grid.values() for v in grid):
+            try:
+                root = np.linalg.cholesky(self.products[variant.at, variant.at])
+            except np.linalg.LinAlgError:
+                continue
+            whiten[variant.at, variant.at] = np.linalg.inv(root)
+        return whiten @ self.products @ whiten.T
+
+
+def _weakest(block: np.ndarray) -> float:
+    return math.sqrt(max(0.0, float(np.linalg.eigvalsh(block)[0])))
 
 
 def signatures(
@@ -155,17 +173,46 @@ def signatures(
             grid.setdefault(c.name, []).append(variant)
     level = abs(sound.get("coulomb", 0.0))
     variance = sensor.density(model.band_hz) / runs[0].step_s
-    gram, samples = _products(runs, made, base, Weights(sensor.noise_rms, max(level, 1e-9), model.band_hz))
+    weights = Weights(sensor.noise_rms, max(level, 1e-9), model.band_hz)
     used = nominal.size
+    gram, samples = _products(runs, made, base, weights)
     # The shift that all starts have in common is known to the uncertainty of a start.
-    common = max(level * start_uncertainty_s(runs), 1e-12)
-    gram[-1, -1] += variance / common**2
-    left = _freed(gram, [*range(used), gram.shape[0] - 1])
-    offset = used
-    shifted = {n: _moved(v, offset) for n, v in typical.items()}
-    tables = {n: tuple(_moved(v, offset) for v in vs) for n, vs in grid.items()}
-    took = sum(r.duration_s for r in runs) / 60.0
-    return Signatures(model, left / variance, shifted, tables, len(every_stroke(runs)), samples, took)
+    start_s = start_uncertainty_s(runs)
+    gram[-1, -1] += variance / max(level * start_s, 1e-12) ** 2
+    left = _freed(gram, [*range(used), gram.shape[0] - 1]) / variance
+    shifted = {n: _moved(v, used) for n, v in typical.items()}
+    return Signatures(
+        model=model,
+        products=left,
+        typical=shifted,
+        grid={n: tuple(_moved(v, used) for v in vs) for n, vs in grid.items()},
+        moving=_away_from_reversals(runs, made, typical, used, variance),
+        start_s=start_s,
+        strokes=len(every_stroke(runs)),
+        samples=samples,
+        minutes=minutes(runs),
+    )
+
+
+def _away_from_reversals(
+    runs: Sequence[Prepared],
+    made: Sequence[list[np.ndarray]],
+    typical: Mapping[str, Variant],
+    used: int,
+    variance: float,
+) -> dict[str, float]:
+    chosen = [*range(used), *(i for v in typical.values() for i in range(v.at.start, v.at.stop))]
+    total = np.zeros((len(chosen), len(chosen)))
+    for r, columns in zip(runs, made, strict=True):
+        a = np.column_stack(columns)[r.usable & ~r.zone][:, chosen]
+        total += a.T @ a
+    left = _freed(total, list(range(used))) / variance
+    found, place = {}, 0
+    for name, v in typical.items():
+        width = v.at.stop - v.at.start
+        found[name] = _weakest(left[place : place + width, place : place + width])
+        place += width
+    return found
 
 
 def _moved(v: Variant, by: int) -> Variant:

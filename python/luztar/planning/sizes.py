@@ -16,6 +16,8 @@ from .signatures import Signatures, Variant
 
 # One test among the thirty or so directions of the catalogue stands at 5 % where a single one stands at 3.3.
 STANDARD_ERRORS = 3.3
+# A gap or break-away smaller than this many times the first point of its grid is folded into a sharp one.
+FOLDED_BELOW = 1.5
 # Effects whose cosine is above this leave less than a tenth of their power to tell them by.
 CONFUSABLE = 0.95
 
@@ -64,17 +66,26 @@ class Smallest:
         }
 
 
-def needed_errors(table: Signatures, sensor: Sensor) -> float:
-    """Return how many standard errors an effect needs to be named.
+def chance_errors(strokes: int) -> float:
+    """Return how many standard errors an effect needs to stand out from chance.
 
-    It must stand out from chance (3.3) and take 1 % off the error: before, the mean square is that of the noise plus
-    the effect's, after, that of the noise alone.
+    The tests take the stroke as the unit: their statistic ``z / sqrt(1 + z^2 / strokes)`` cannot exceed the root of the
+    number of strokes, however large the effect. It must reach 3.3, with few strokes three quarters of what it can.
+    """
+    squared = min(STANDARD_ERRORS**2, 0.6 * strokes)
+    return math.sqrt(squared / (1.0 - squared / strokes))
+
+
+def gain_errors(table: Signatures, sensor: Sensor) -> float:
+    """Return how many standard errors an effect has that takes 1 % off the error.
+
+    Before, the mean square is that of the noise plus the effect's, after, that of the noise alone.
     """
     share = 1.0 / (1.0 - PRACTICAL_GAIN) ** 2 - 1.0
     # The noise's variance over that of one sample of the same density.
     step_s = 60.0 * table.minutes / max(table.samples, 1)
     independent = sensor.noise_rms**2 * step_s / sensor.density(table.model.band_hz)
-    return max(STANDARD_ERRORS, math.sqrt(share * independent * table.samples))
+    return math.sqrt(share * independent * table.samples)
 
 
 def folds_into(rival: str, effect: str, structure: str) -> bool:
@@ -98,11 +109,10 @@ def nearest(table: Signatures, effect: str) -> tuple[str | None, float]:
 
 def smallest(table: Signatures, sensor: Sensor) -> tuple[Smallest, ...]:
     """Return the smallest size of every effect that a test can show, in the order of the catalogue."""
-    errors = needed_errors(table, sensor)
-    return tuple(_smallest(table, name, errors) for name in table.effects)
+    return tuple(_smallest(table, sensor, name) for name in table.effects)
 
 
-def _smallest(table: Signatures, name: str, errors: float) -> Smallest:
+def _smallest(table: Signatures, sensor: Sensor, name: str) -> Smallest:
     structure = table.model.structure_name
     c = card(name, structure)
     variant = table.typical[name]
@@ -111,14 +121,17 @@ def _smallest(table: Signatures, name: str, errors: float) -> Smallest:
     inner = dict(zip((p.key for p in c.inner), variant.inner, strict=True))
     inner.pop(main.key, None)
     told: float | None = None
+    chance, worth = chance_errors(table.strokes), gain_errors(table, sensor)
     if c.linear:
         strength = table.strength(variant)
-        size = errors / strength if strength > 0.0 else None
+        # What only shows around reversals is tested there; of the rest the tests see what lies outside.
+        seen = strength if name == "inertia" else min(strength, table.moving[name])
+        size = max(worth / strength, chance / seen) if seen > 0.0 else None
         left = strength * math.sqrt(max(0.0, 1.0 - cosine**2))
         if size is not None and left > 0.0:
             told = max(size, STANDARD_ERRORS / left)
     else:
-        size = _crossing(table, c, variant, errors)
+        size = _crossing(table, c, variant, max(chance, worth))
     return Smallest(name, main.key, main.unit, size, inner, rival, cosine, told)
 
 
@@ -133,8 +146,15 @@ def _crossing(table: Signatures, c: Card, typical: Variant, errors: float) -> fl
     if not above.size:
         return None
     first = int(above[0])
+    if c.name == "delay":
+        # The sensor may show the starts late by their uncertainty, and the fit allows for as much again.
+        return _between(values, heights, first, errors) + 2.0 * table.start_s
+    # Below half above the first point of the grid a verdict calls it sharp friction.
+    return max(_between(values, heights, first, errors), FOLDED_BELOW * float(values[0]))
+
+
+def _between(values: np.ndarray, heights: np.ndarray, first: int, errors: float) -> float:
     if first == 0:
-        # Below the first point of the grid the search calls it sharp friction.
         return float(values[0])
     low, high = max(heights[first - 1], 1e-9), heights[first]
     share = math.log(errors / low) / math.log(high / low)

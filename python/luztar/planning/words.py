@@ -86,8 +86,7 @@ def plan_text(plan: Plan) -> str:
 
 def formula(plan: Plan) -> str:
     """Return how the smallest size is found, in words."""
-    from .sizes import STANDARD_ERRORS
-
-    if plan.errors > STANDARD_ERRORS:
-        return f"{plan.errors:.1f} standard errors: from there an effect takes 1 % off the unseen error"
-    return f"{plan.errors:.1f} standard errors"
+    return (
+        f"{plan.chance_errors:.1f} standard errors away from reversals against chance, and {plan.gain_errors:.1f} in "
+        "all: 1 % of the unseen error"
+    )
