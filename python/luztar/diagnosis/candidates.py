@@ -26,6 +26,7 @@ SET_ERRORS = 2.0
 PRACTICAL_GAIN = 0.01
 # Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
 REFINED_WITHIN = 1.6
+BENT_WITHIN = 6.0
 # Grid points per candidate shown to the score test; more only overlap.
 TESTED_POINTS = 5
 
@@ -98,9 +99,13 @@ def try_all(fitted: Fit, progress: Callable[[int, int], None] | None = None) -> 
                 progress(done + 1, len(listed))
     found.sort(key=lambda c: c.held_out_loss)
     least = found[0].held_out_loss if found else 0.0
-    for candidate in found:
-        if candidate.card.inner and candidate.held_out_loss <= REFINED_WITHIN * least:
-            candidate.search.refine(fitted.problem, only=candidate.name, rounds=1)
+    # Where even the best takes next to nothing off, refining changes no answer.
+    worth = least < (1.0 - 0.5 * PRACTICAL_GAIN) ** 2 * baseline(fitted).held_out_loss
+    for candidate in found if worth else ():
+        # What changes the contact or the delay may have bent the break-away of the model without it: both are refined.
+        bends = candidate.card.shapes_others
+        if candidate.card.inner and candidate.held_out_loss <= (BENT_WITHIN if bends else REFINED_WITHIN) * least:
+            candidate.search.refine(fitted.problem, only=None if bends else candidate.name, rounds=2 if bends else 1)
     found.sort(key=lambda c: c.held_out_loss)
     return found, features
 

@@ -47,6 +47,13 @@ def studentised(scores: np.ndarray, flips: np.ndarray) -> np.ndarray:
     return np.divide(sums**2, scale, out=np.zeros_like(sums), where=scale > 0)
 
 
+def one_sided(gains: np.ndarray, flips: np.ndarray) -> np.ndarray:
+    """Return squared studentised sums of what may only count when it is positive, shape (draws, features)."""
+    scale = np.sum(gains**2, axis=0)
+    sums = np.maximum(flips @ gains, 0.0)
+    return np.divide(sums**2, scale, out=np.zeros_like(sums), where=scale > 0)
+
+
 def p_values(drawn: np.ndarray) -> np.ndarray:
     """Return one p-value per statistic and draw, each draw taken as if it were the data; shape as ``drawn``."""
     count = len(drawn)

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
@@ -164,7 +166,9 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         Called with (done, total).
     """
     found, features = try_all(fitted, progress)
-    tested = detection(fitted, features)
+    before = baseline(fitted).losses
+    gains = np.column_stack([before - c.search.losses for c in found]) if found else None
+    tested = detection(fitted, features, gains)
     judged = judge(fitted, found, tested)
     return Diagnosis(
         fit=fitted,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .chance import p_values, signs, studentised
+from .chance import one_sided, p_values, signs, studentised
 from .equations import Weights
 from .floor import hats, travel_since_reversal
 from .prepare import Prepared
@@ -101,6 +101,7 @@ def detect(
     weights: Weights,
     start_shift: float,
     start_bound: float,
+    gains: np.ndarray | None = None,
 ) -> Detection:
     """Test whether something is missing from a model.
 
@@ -115,6 +116,9 @@ def detect(
         What each stroke's own shift of its start is weighed against.
     start_shift, start_bound : float
         The fitted coefficient of the common shift of the starts (the last column) and the most it may be.
+    gains : ndarray, shape (strokes, candidates), optional
+        By how much each candidate lowers the held-out loss of every stroke. If nothing is missing a gain is as likely
+        as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
     features = [*candidates, *cells(runs)]
@@ -138,12 +142,18 @@ def detect(
     family = np.array([k in lack for k in keys])
     # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
     groups = [np.flatnonzero(~family)] + [np.array([i]) for i in np.flatnonzero(family)]
+    if gains is not None and gains.size:
+        keys.append("gain")
+        single = np.column_stack([single, p_values(one_sided(gains, flips).max(axis=1)[:, None])])
+        family = np.append(family, False)
+        groups = [np.flatnonzero(~family[:-1]), *groups[1:], np.array([len(keys) - 1])]
     grouped = p_values(-np.column_stack([single[:, g].min(axis=1) for g in groups if g.size]))
     overall = p_values(-grouped.min(axis=1)[:, None])[:, 0]
+    candidate = np.array([not f and k != "gain" for k, f in zip(keys, family, strict=True)])
     adjusted = {
-        k: float(np.mean(single[:, ~family].min(axis=1) <= single[0, i] + 1e-12))
+        k: float(np.mean(single[:, candidate].min(axis=1) <= single[0, i] + 1e-12))
         for i, k in enumerate(keys)
-        if not family[i]
+        if candidate[i]
     }
     lack_keys = [k for k in keys if k in lack]
     lack_single = single[:, family]

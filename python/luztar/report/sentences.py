@@ -49,7 +49,8 @@ def verdict(study: Study) -> str:
             "named": f"Missing from the model: {names}.",
             "one_of": f"Missing from the model: {names}; this measurement cannot tell which.",
             "too_few_strokes": "There are too few strokes to say whether anything is missing.",
-            "below_practical_size": "Something may be missing, but this measurement can neither name it nor show a gain worth having.",
+            "below_practical_size": "Something may be missing, but this measurement can neither name it nor show a "
+            "gain worth having.",
         }[study.verdict]
     return f"Missing from the model: {found}. {_end(study)}"
 

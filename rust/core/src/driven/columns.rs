@@ -5,7 +5,7 @@ use super::contact::{engagement, friction_state, hold_at_rest};
 use super::kinematics::derivative;
 use super::recording::Recording;
 use crate::Error;
-use crate::effects::{CATALOGUE, Contact, Effect, Kind, Motion, find};
+use crate::effects::{CATALOGUE, Channels, Contact, Effect, Kind, find};
 
 /// After this many steps of the position sensor a start is no longer uncertain: the friction of a sharp break-away has
 /// turned within twice its travel, which is at most two steps.
@@ -145,7 +145,7 @@ impl Recording {
             (friction || behind).then_some(contact),
         );
         self.cache.get(key, || {
-            let mut raw = self.basis(effect, inner);
+            let mut raw = (effect.along)(&self.channels(), inner);
             if friction || behind {
                 let state = friction_state(contact, &self.seen);
                 if friction {
@@ -196,31 +196,20 @@ impl Recording {
         Ok(self.late(&filtered[0], delay_s))
     }
 
-    /// The basis of one law along the record, one vector per column.
-    fn basis(&self, effect: &Effect, inner: &[f64]) -> Vec<Vec<f64>> {
-        let n = self.len();
-        let slowest_speed = self.slowest_speed();
-        let mut columns = vec![vec![0.0; n]; effect.columns];
-        let mut out = vec![0.0; effect.columns];
-        for i in 0..n {
-            let motion = Motion {
-                position: self.position[i],
-                speed: self.speed[i],
-                acceleration: self.acceleration[i],
-                turn_rad: self.position[i] * self.turn_rad_per_unit,
-                time_s: i as f64 / self.sample_rate_hz,
-                rest_s: self.phases.rest_s[i],
-                travelled: self.phases.travelled[i],
-                direction: self.phases.direction[i],
-                slowest_speed,
-                load_n: self.load_n.as_ref().map_or(0.0, |load| load[i]),
-            };
-            (effect.basis)(&motion, inner, &mut out);
-            for (column, value) in columns.iter_mut().zip(&out) {
-                column[i] = *value;
-            }
+    /// What laws look at, along the record.
+    fn channels(&self) -> Channels<'_> {
+        Channels {
+            position: &self.position,
+            speed: &self.speed,
+            acceleration: &self.acceleration,
+            rest_s: &self.phases.rest_s,
+            travelled: &self.phases.travelled,
+            direction: &self.phases.direction,
+            load_n: self.load_n.as_deref(),
+            slowest_speed: self.slowest_speed(),
+            turn_rad_per_unit: self.turn_rad_per_unit,
+            step_s: 1.0 / self.sample_rate_hz,
         }
-        columns
     }
 
     /// The kept samples of a full-rate column, read `delay_s` earlier.

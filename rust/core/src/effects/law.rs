@@ -64,6 +64,60 @@ pub trait Law {
     }
 }
 
+/// The states of motion along a record, one slice per channel, all of one length.
+#[derive(Debug, Clone, Copy)]
+pub struct Channels<'a> {
+    /// See [`Motion::position`].
+    pub position: &'a [f64],
+    /// See [`Motion::speed`].
+    pub speed: &'a [f64],
+    /// See [`Motion::acceleration`].
+    pub acceleration: &'a [f64],
+    /// See [`Motion::rest_s`].
+    pub rest_s: &'a [f64],
+    /// See [`Motion::travelled`].
+    pub travelled: &'a [f64],
+    /// See [`Motion::direction`].
+    pub direction: &'a [f64],
+    /// See [`Motion::load_n`].
+    pub load_n: Option<&'a [f64]>,
+    /// See [`Motion::slowest_speed`].
+    pub slowest_speed: f64,
+    /// Radians of the turning part per unit of position.
+    pub turn_rad_per_unit: f64,
+    /// Seconds between samples.
+    pub step_s: f64,
+}
+
+/// No law has more columns than a sine and a cosine.
+const MOST_COLUMNS: usize = 2;
+
+/// The basis of one law along a record, one vector per column; the law is known to the compiler, so that it is inlined.
+fn along<T: Law>(channels: &Channels<'_>, inner: &[f64]) -> Vec<Vec<f64>> {
+    let n = channels.position.len();
+    let mut columns = vec![Vec::with_capacity(n); T::COLUMNS];
+    for i in 0..n {
+        let motion = Motion {
+            position: channels.position[i],
+            speed: channels.speed[i],
+            acceleration: channels.acceleration[i],
+            turn_rad: channels.position[i] * channels.turn_rad_per_unit,
+            time_s: i as f64 * channels.step_s,
+            rest_s: channels.rest_s[i],
+            travelled: channels.travelled[i],
+            direction: channels.direction[i],
+            slowest_speed: channels.slowest_speed,
+            load_n: channels.load_n.map_or(0.0, |load| load[i]),
+        };
+        let mut out = [0.0; MOST_COLUMNS];
+        T::basis(&motion, inner, &mut out[..T::COLUMNS]);
+        for (column, value) in columns.iter_mut().zip(out) {
+            column.push(value);
+        }
+    }
+    columns
+}
+
 /// An effect of the catalogue: a law behind function pointers, chosen by name at run time.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
@@ -73,8 +127,8 @@ pub struct Effect {
     pub columns: usize,
     /// See [`Law::SHAPES_OTHERS`].
     pub shapes_others: bool,
-    /// The basis for one sample.
-    pub basis: fn(&Motion<f64>, &[f64], &mut [f64]),
+    /// The basis along a record.
+    pub along: fn(&Channels<'_>, &[f64]) -> Vec<Vec<f64>>,
     /// See [`Law::contact`].
     pub contact: fn(&[f64], &mut Contact),
     /// See [`Law::delay_s`].
@@ -89,7 +143,7 @@ impl Effect {
             card: &T::CARD,
             columns: T::COLUMNS,
             shapes_others: T::SHAPES_OTHERS,
-            basis: T::basis::<f64>,
+            along: along::<T>,
             contact: T::contact,
             delay_s: T::delay_s,
         }

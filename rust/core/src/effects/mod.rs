@@ -36,7 +36,7 @@ mod warmup;
 
 pub use card::{Card, Grid, Kind, Parameter, Role};
 pub use lane::Lane;
-pub use law::{Contact, Effect, Law, Motion};
+pub use law::{Channels, Contact, Effect, Law, Motion};
 
 use crate::Error;
 
