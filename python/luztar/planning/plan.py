@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..model import Model, card
-from .rehearse import Sensor, minutes, planning_rate_hz, rehearse
+from .rehearse import Sensor, planning_rate_hz, rehearse
+from .separate import Ranked
 from .signatures import Signatures, signatures
 from .sizes import CONFUSABLE, Pair, Smallest, chance_errors, confusable, gain_errors, smallest
 from .trials import Trial, as_planned, axis_trials, rig_trials
@@ -230,6 +231,7 @@ def plan(
     others = rig_trials() if rig else axis_trials(-reach, reach, max([high, *speeds]))
     names = table.effects
     cosines = np.array([[1.0 if a == b else table.cosine(a, b) for b in names] for a in names])
+    sizes = smallest(table, sensor)
     return Plan(
         model=model,
         test=test,
@@ -239,41 +241,54 @@ def plan(
         sensor=sensor,
         chance_errors=chance_errors(table.strokes),
         gain_errors=gain_errors(table, sensor),
-        sizes=smallest(table, sensor),
-        pairs=_pairs(table, others, sensor, sound),
+        sizes=sizes,
+        pairs=_pairs(table, sizes, others, sensor, sound),
         effects=names,
         cosines=cosines,
     )
 
 
-def _pairs(table: Signatures, trials: Sequence[Trial], sensor: Sensor, sound: dict[str, float]) -> tuple[Pair, ...]:
-    """Return the pairs that a test cannot tell apart, each with the trial that tells most per minute."""
+def _pairs(
+    table: Signatures,
+    sizes: Sequence[Smallest],
+    trials: Sequence[Trial],
+    sensor: Sensor,
+    sound: Mapping[str, float],
+) -> tuple[Pair, ...]:
+    """Return the pairs that a test cannot tell apart, each with the trial that tells most per minute.
+
+    The effect is taken at twice the smallest size that the test would show: there the question arises.
+    """
     found = confusable(table)
     among = {n for a, b, _ in found for n in (a, b)}
     tables = []
     for trial in trials if found else ():
         run = rehearse([trial.make(1.0 / sensor.rate_hz, 1)], sensor, table.model)
-        tables.append((trial, minutes(run), signatures(run, table.model, sensor, sound, among)))
+        tables.append((trial, signatures(run, table.model, sensor, sound, among)))
+    size_of = {s.effect: 2.0 * s.size if s.size and card(s.effect).linear else 1.0 for s in sizes}
     out = []
     for a, b, cosine in found:
-        best, most, at = None, 0.0, None
-        for trial, took, other in tables:
-            there = other.cosine(a, b)
-            # Per unit of the effect: its size is the same in every trial.
-            left = other.strength(other.typical[a]) * math.sqrt(max(0.0, 1.0 - there**2)) / math.sqrt(took)
-            if there < CONFUSABLE and left > most:
-                best, most, at = trial, left, there
-        text = f"{best.text}." if best else "None of the tests on the list tells them apart; look at the mechanism."
-        out.append(Pair((a, b), cosine, best.name if best else None, text, at))
+        ranked = []
+        for trial, there in tables:
+            alike = there.cosine(a, b)
+            apart = there.strength(there.typical[a]) * size_of[a] * math.sqrt(max(0.0, 1.0 - alike**2))
+            if alike < CONFUSABLE and apart > 0.0:
+                ranked.append((Ranked(trial, there.minutes, apart), alike))
+        if not ranked:
+            none = "None of the tests on the list tells them apart; look at the mechanism."
+            out.append(Pair((a, b), cosine, None, none, None))
+            continue
+        best, alike = max(ranked, key=lambda r: r[0].per_minute)
+        out.append(Pair((a, b), cosine, best.trial.name, f"{best.trial.text}.", alike))
     return tuple(out)
 
 
 def _positive(name: str, value: float) -> float:
     if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
-        raise ParameterError(f"{name} is {value}", name, "Give a number above 0.")
+        raise ParameterError(f"{value} makes no test", name, "Give a number above 0.")
     return float(value)
 
 
 def _counted(name: str, value: int, most: int) -> None:
     if not 1 <= value <= most:
-        raise ParameterError(f"{name} is {value}", name, f"Give a whole number from 1 to {most}.")
+        raise ParameterError(f"{value} makes no test", name, f"Give a whole number from 1 to {most}.")

@@ -59,8 +59,6 @@ class Signatures:
         the square of the standard errors of an effect of size one.
     typical : mapping of str to Variant
     grid : mapping of str to tuple of Variant
-    moving : mapping of str to float
-        Standard errors of the typical variant of size one away from reversals, where the tests of chance look.
     start_s : float
         By how much the instant of a start is uncertain.
     strokes, samples : int
@@ -71,7 +69,6 @@ class Signatures:
     products: np.ndarray = field(repr=False)
     typical: Mapping[str, Variant] = field(repr=False)
     grid: Mapping[str, tuple[Variant, ...]] = field(repr=False)
-    moving: Mapping[str, float] = field(repr=False)
     start_s: float
     strokes: int
     samples: int
@@ -84,7 +81,8 @@ class Signatures:
 
     def strength(self, variant: Variant) -> float:
         """Return the standard errors of a variant of size one; of the worse phase where it has one."""
-        return _weakest(self.products[variant.at, variant.at])
+        block = self.products[variant.at, variant.at]
+        return math.sqrt(max(0.0, float(np.linalg.eigvalsh(block)[0])))
 
     def cosine(self, effect: str, rival: str) -> float:
         """Return how well a rival can imitate an effect at its typical inner parameters.
@@ -119,10 +117,6 @@ class Signatures:
                 continue
             whiten[variant.at, variant.at] = np.linalg.inv(root)
         return whiten @ self.products @ whiten.T
-
-
-def _weakest(block: np.ndarray) -> float:
-    return math.sqrt(max(0.0, float(np.linalg.eigvalsh(block)[0])))
 
 
 def signatures(
@@ -186,33 +180,11 @@ def signatures(
         products=left,
         typical=shifted,
         grid={n: tuple(_moved(v, used) for v in vs) for n, vs in grid.items()},
-        moving=_away_from_reversals(runs, made, typical, used, variance),
         start_s=start_s,
         strokes=len(every_stroke(runs)),
         samples=samples,
         minutes=minutes(runs),
     )
-
-
-def _away_from_reversals(
-    runs: Sequence[Prepared],
-    made: Sequence[list[np.ndarray]],
-    typical: Mapping[str, Variant],
-    used: int,
-    variance: float,
-) -> dict[str, float]:
-    chosen = [*range(used), *(i for v in typical.values() for i in range(v.at.start, v.at.stop))]
-    total = np.zeros((len(chosen), len(chosen)))
-    for r, columns in zip(runs, made, strict=True):
-        a = np.column_stack(columns)[r.usable & ~r.zone][:, chosen]
-        total += a.T @ a
-    left = _freed(total, list(range(used))) / variance
-    found, place = {}, 0
-    for name, v in typical.items():
-        width = v.at.stop - v.at.start
-        found[name] = _weakest(left[place : place + width, place : place + width])
-        place += width
-    return found
 
 
 def _moved(v: Variant, by: int) -> Variant:

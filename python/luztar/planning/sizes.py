@@ -121,17 +121,15 @@ def _smallest(table: Signatures, sensor: Sensor, name: str) -> Smallest:
     inner = dict(zip((p.key for p in c.inner), variant.inner, strict=True))
     inner.pop(main.key, None)
     told: float | None = None
-    chance, worth = chance_errors(table.strokes), gain_errors(table, sensor)
+    errors = max(chance_errors(table.strokes), gain_errors(table, sensor))
     if c.linear:
         strength = table.strength(variant)
-        # What only shows around reversals is tested there; of the rest the tests see what lies outside.
-        seen = strength if name == "inertia" else min(strength, table.moving[name])
-        size = max(worth / strength, chance / seen) if seen > 0.0 else None
+        size = errors / strength if strength > 0.0 else None
         left = strength * math.sqrt(max(0.0, 1.0 - cosine**2))
         if size is not None and left > 0.0:
             told = max(size, STANDARD_ERRORS / left)
     else:
-        size = _crossing(table, c, variant, max(chance, worth))
+        size = _crossing(table, c, variant, errors)
     return Smallest(name, main.key, main.unit, size, inner, rival, cosine, told)
 
 

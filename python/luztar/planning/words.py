@@ -86,7 +86,6 @@ def plan_text(plan: Plan) -> str:
 
 def formula(plan: Plan) -> str:
     """Return how the smallest size is found, in words."""
-    return (
-        f"{plan.chance_errors:.1f} standard errors away from reversals against chance, and {plan.gain_errors:.1f} in "
-        "all: 1 % of the unseen error"
-    )
+    if plan.gain_errors > plan.chance_errors:
+        return f"{plan.gain_errors:.1f} standard errors: from there an effect takes 1 % off the unseen error"
+    return f"{plan.chance_errors:.1f} standard errors: from there an effect stands out from chance"
