@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def rehearse(positions: Sequence[np.ndarray], sensor: Sensor, model: Model) -> t
     runs = []
     for number, position in enumerate(positions, start=1):
         seen = np.round(position / sensor.step) * sensor.step if sensor.step > 0.0 else position
-        channels = {structure.motion: seen, structure.effort: np.zeros(seen.size)}
+        channels: dict[str, Any] = {structure.motion: seen, structure.effort: np.zeros(seen.size)}
         runs.append(Run(sample_rate_hz=sensor.rate_hz, name=f"trial {number}", **channels))
     return prepare(runs, model)
 

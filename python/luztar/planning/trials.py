@@ -49,9 +49,9 @@ def _turned(
     def make(step_s: float, seed: int) -> np.ndarray:
         rng = np.random.default_rng(seed)
         if speeds is not None:
-            each = drawn_speeds(*speeds, count, rng)
+            each = drawn_speeds(*speeds, count, rng).tolist()
         else:
-            each = np.resize(np.repeat(ladder, 2), count)
+            each = np.resize(np.repeat(ladder, 2), count).tolist()
         start, moves = strokes(low, high, each, rng, rests_s=rests_s, overshoot=overshoot, creep=creep)
         return path(start, moves, step_s, rng)
 
