@@ -298,10 +298,11 @@ def test_candidates_mark_decoys_and_highlight_only_what_is_named(study: Study) -
         first[trace.name] = first.get(trace.name, 0) + len(trace.x)
     assert first["best"] == 1
     assert first["decoys: no physics, a ruler for chance"] == 2
-    # The line "without any of them" is what every candidate's gain is a share of.
+    # The line "without any of them" is the unseen error of the model as it stands, but for
+    # inner parameters that candidates meet as they were fitted on all strokes: a few per cent at most.
     line = figures.candidates(study.first).layout.shapes[0].x0
-    for c in study.first.candidates:
-        assert c.held_out_rms == pytest.approx((1.0 - c.gain) * line, rel=1e-9)
+    assert line == pytest.approx(study.steps[0].fit.error.held_out_rms, rel=0.05)
+    assert study.first.candidates[0].held_out_rms < line
     last = {trace.name for trace in figures.candidates(study.last).data}
     assert last == {"other effects", "decoys: no physics, a ruler for chance"}
 

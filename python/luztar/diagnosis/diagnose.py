@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,8 +13,10 @@ from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
-from .fit import Fit
+from .fit import Fit, folded, predict
 from .intervals import Estimate
+from .misfit import rms, usable
+from .prepare import Prepared
 from .score import Detection
 from .verdict import Judgement, judge
 from .where import Map, Regime, regimes, residual_map
@@ -28,9 +30,10 @@ class Tried:
     ----------
     effect : str
     rms, held_out_rms : float
-        Error of the refitted model, from the losses of the comparison (reversal instants adjusted).
+        Error of the refitted model over the comparison's samples, comparable with ``error``.
     gain : float
-        Share of the held-out error (rms) it takes away.
+        Share of the held-out error (rms) it takes away, with the instant of each start free within the sensor's step:
+        what names rest on.
     gain_errors : float
         How many standard errors (paired by stroke) the fall of the loss is.
     p_value : float or None
@@ -84,7 +87,9 @@ class Diagnosis:
         By held-out error, decoys among them.
     detection : Detection
     found : tuple of Candidate
-        The same candidates with their states.
+        The candidates with their states.
+    unseen_rms : float
+        The held-out error without any of the candidates, as they meet it.
     """
 
     fit: Fit
@@ -94,6 +99,7 @@ class Diagnosis:
     candidates: tuple[Tried, ...]
     detection: Detection
     found: tuple[Candidate, ...] = field(repr=False, default=())
+    unseen_rms: float = 0.0
 
     @property
     def verdict(self) -> str:
@@ -178,18 +184,21 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
         found=tuple(found),
+        unseen_rms=_rms(fitted.runs, folded(fitted.problem, baseline(fitted))),
     )
 
 
 def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> Tried:
     state = c.search.best
     assert state is not None
-    samples = max(int(state.blocks.samples.sum()), 1)
+    problem, runs = fitted.problem, fitted.runs
+    modelled = [predict(r, m, state.coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
+    unseen = folded(problem, c.search)
     share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,
-        rms=(c.search.loss / samples) ** 0.5,
-        held_out_rms=(c.held_out_loss / samples) ** 0.5,
+        rms=_rms(runs, modelled),
+        held_out_rms=_rms(runs, unseen),
         gain=share,
         gain_errors=errors,
         p_value=tested.candidates.get(c.name),
@@ -198,6 +207,10 @@ def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> T
         same_as=judged.folded.get(c.name),
         parameters=values_of(fitted, c),
     )
+
+
+def _rms(runs: Sequence[Prepared], predicted: Sequence[np.ndarray]) -> float:
+    return rms(usable(runs, [r.effort - p for r, p in zip(runs, predicted, strict=True)]))
 
 
 def values_of(fitted: Fit, c: Candidate) -> dict[str, float]:

@@ -160,14 +160,14 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
     best = search.best
     assert best is not None
     model, runs = problem.model, tuple(problem.runs)
-    predicted = tuple(_predict(r, m, best.coefficients) for r, m in zip(runs, best.made.matrix, strict=True))
+    predicted = tuple(predict(r, m, best.coefficients) for r, m in zip(runs, best.made.matrix, strict=True))
     if unseen:
         elsewhere = replace(problem, runs=unseen)
         there = state(elsewhere, best.terms)
-        held = tuple(_predict(r, m, best.coefficients) for r, m in zip(unseen, there.made.matrix, strict=True))
+        held = tuple(predict(r, m, best.coefficients) for r, m in zip(unseen, there.made.matrix, strict=True))
         held_runs = unseen
     else:
-        held, held_runs = _folded(problem, search), runs
+        held, held_runs = folded(problem, search), runs
     error = misfit(
         runs,
         [r.effort - p for r, p in zip(runs, predicted, strict=True)],
@@ -191,13 +191,14 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
     )
 
 
-def _predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+def predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """Return the modelled torque or force of one run."""
     # The last column is the measurement less what is known beforehand, so that the difference puts it back. The common
     # shift of the starts belongs to the sensor: the error is that of the model without it.
     return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
-def _folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
+def folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
     """Predict every stroke with coefficients that have not seen its fold."""
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]
@@ -209,7 +210,7 @@ def _folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
         for s, here in zip(strokes, inside, strict=True):
             if here:
                 r, m = problem.runs[s.run], chosen.made.matrix[s.run]
-                predicted[s.run][s.first : s.last] = _predict(r, m, coefficients)[s.first : s.last]
+                predicted[s.run][s.first : s.last] = predict(r, m, coefficients)[s.first : s.last]
     return tuple(predicted)
 
 

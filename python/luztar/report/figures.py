@@ -92,8 +92,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
     fit = diagnosis.fit
     shown = [c for c in diagnosis.candidates if math.isfinite(c.held_out_rms)]
     values = [c.held_out_rms for c in shown]
-    # The gain is a share of the error, so any candidate tells what the model has without it.
-    base = values[0] / max(1.0 - shown[0].gain, 1e-12) if shown else 0.0
+    base = diagnosis.unseen_rms
     low = min([*values, base])
     # Differences of less than a few per cent must not fill the picture, nor must what only does harm.
     spare = max(0.5 * (base - low), 0.04 * base)
