@@ -38,6 +38,7 @@ MAY_IMPORT = {
     "model": FOUNDATION,
     "effects": FOUNDATION | {"model"},
     "diagnosis": FOUNDATION | {"measurement", "model"},
+    "planning": FOUNDATION | {"diagnosis", "measurement", "model"},
 }
 # Not even inside a function.
 NEVER = {
@@ -45,6 +46,7 @@ NEVER = {
     "tb038": {"diagnosis", "model", "cli", "app"},
     "model": {"diagnosis", "measurement", "report", "cli", "app", "tb038"},
     "diagnosis": {"cli", "app"},
+    "planning": {"cli", "app", "tb038"},
     "report": {"cli", "app"},
 }
 

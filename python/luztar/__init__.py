@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .measurement import read as read
     from .measurement import read_frame as read_frame
     from .model import Model as Model
+    from .planning import plan as plan
 
 _LAZY: dict[str, str] = {
     "Model": "model:Model",
@@ -39,6 +40,7 @@ _LAZY: dict[str, str] = {
     "fit": "diagnosis:fit",
     "measurement": "measurement",
     "model": "model",
+    "plan": "planning:plan",
     "read": "measurement:read",
     "read_frame": "measurement:read_frame",
     "regression": "regression",

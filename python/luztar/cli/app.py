@@ -217,6 +217,74 @@ def fit(
 
 
 @app.command()
+def plan(
+    structure: Annotated[
+        str, typer.Option("--structure", metavar="S", help="rig, axis, or a model file (TOML): the model in use.")
+    ] = "rig",
+    encoder_deg: Annotated[
+        float | None, typer.Option("--encoder-deg", metavar="DEG", help="Step of the angle sensor. Default: 0.02.")
+    ] = None,
+    step_m: Annotated[
+        float | None, typer.Option("--step-m", metavar="M", help="Step of an axis's position sensor. Default: 1e-6.")
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option("--rate", metavar="HZ", help="Sample rate. Default: 500 for rig, 1000 for axis.")
+    ] = None,
+    speed: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--speed", metavar="LOW HIGH", help="Speeds, deg/s or m/s. Default: 5 38; axis 0.04 0.13."),
+    ] = None,
+    speeds: Annotated[
+        str | None, typer.Option("--speeds", metavar="LIST", help="Even speeds instead, two strokes each: 3,12,40.")
+    ] = None,
+    angle: Annotated[
+        float | None, typer.Option("--angle", metavar="DEG", help="Strokes go beyond plus and minus this. Default: 50.")
+    ] = None,
+    travel_m: Annotated[
+        float | None, typer.Option("--travel-m", metavar="M", help="Length of an axis's strokes. Default: 0.24.")
+    ] = None,
+    runs: Annotated[int, typer.Option("--runs", metavar="N", help="Runs.")] = 3,
+    strokes: Annotated[int, typer.Option("--strokes", metavar="N", help="Strokes of each run.")] = 6,
+    minutes: Annotated[
+        float | None, typer.Option("--minutes", metavar="MIN", help="Length of all runs together, for --strokes.")
+    ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option("--noise", metavar="NM", help="Noise floor as compare shows it. Default: 0.02 Nm; axis 1 N."),
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option("--friction", metavar="NM", help="Friction level. Default: 0.75 Nm; axis 20 N.")
+    ] = None,
+    json: Json = False,
+    report: Report = None,
+    debug: Debug = False,
+) -> int:
+    """Simulate a test: which effects it will see, which it cannot tell apart.
+
+    Nothing is measured yet; the test that would tell a pair apart is named.
+    """
+    from .plan import run_plan
+
+    return run_plan(
+        structure,
+        speeds,
+        json,
+        report,
+        encoder_deg=encoder_deg,
+        step_m=step_m,
+        rate_hz=rate,
+        speed=speed,
+        angle_deg=angle,
+        travel_m=travel_m,
+        runs=runs,
+        strokes=strokes,
+        minutes=minutes,
+        noise=noise,
+        friction=friction,
+    )
+
+
+@app.command()
 def explain(
     effect: Annotated[str | None, typer.Argument(metavar="[EFFECT]", help="An effect's name.")] = None,
     json: Json = False,

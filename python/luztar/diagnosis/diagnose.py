@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -85,7 +86,6 @@ class Diagnosis:
     candidates : tuple of Tried
         By held-out error, decoys among them.
     detection : Detection
-    next_experiment : Experiment or None
     found : tuple of Candidate
         The candidates with their states.
     unseen_rms : float
@@ -98,7 +98,6 @@ class Diagnosis:
     map: Map = field(repr=False)
     candidates: tuple[Tried, ...]
     detection: Detection
-    next_experiment: Experiment | None
     found: tuple[Candidate, ...] = field(repr=False, default=())
     unseen_rms: float = 0.0
 
@@ -111,6 +110,11 @@ class Diagnosis:
     def named(self) -> tuple[str, ...]:
         """The effect named, or the set under ``one_of``."""
         return self.judgement.named
+
+    @functools.cached_property
+    def next_experiment(self) -> Experiment | None:
+        """The test that would tell apart what this measurement could not; simulated when it is first asked for."""
+        return next_experiment(self.fit, self.judgement, self.found)
 
     @property
     def parameters(self) -> dict[str, Estimate]:
@@ -179,7 +183,6 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         map=residual_map(fitted),
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
-        next_experiment=next_experiment(fitted, judged),
         found=tuple(found),
         unseen_rms=_rms(fitted.runs, folded(fitted.problem, baseline(fitted))),
     )
