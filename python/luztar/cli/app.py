@@ -82,7 +82,7 @@ def tb038(
     from .output import say
     from .report import check_place, write
 
-    check_place(report)
+    check_place(report, runs)
     check_positive("--link-distance-m", link_distance_m, "metres")
     # The check counts copies itself and says so.
     given = read_runs(runs, mapped=map, units=unit, resample_hz=resample, drop_copies=False)
@@ -180,7 +180,7 @@ def study(
     from .progress import bar
     from .report import check_of, check_place, write
 
-    check_place(report)
+    check_place(report, [*runs, *held_out, model])
     start_from, given = _inputs(model, band, runs, held_out, map, unit, resample)
     most = {} if max_effects is None else {"max_effects": max_effects}
     try:

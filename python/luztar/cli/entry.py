@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from collections.abc import Sequence
@@ -20,6 +21,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments : sequence of str, optional
         The words after the program's name; those of the process where not given.
     """
+    # The work is shared out by luztar's own threads; a linear-algebra library that starts more for every small product
+    # makes it slower. Read when NumPy is loaded, which is after this.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     given = list(sys.argv[1:] if arguments is None else arguments)
     flags = given[: given.index(_FLAGS_END)] if _FLAGS_END in given else given
     as_json, debug = "--json" in flags, "--debug" in flags

@@ -14,17 +14,20 @@ if TYPE_CHECKING:
     from ..model import Model
 
 
-def check_place(path: str | None) -> None:
+def check_place(path: str | None, inputs: Sequence[str] = ()) -> None:
     """Refuse a place that cannot be written, before the work and not after it.
 
     Raises
     ------
     ParameterError
-        Where the folder does not exist or the path is a folder.
+        Where the folder does not exist, the path is a folder, or it is one of the files that are read.
     """
     if path is None:
         return
     place = Path(path)
+    if any(place.resolve() == Path(name).resolve() for name in inputs):
+        remedy = "Name a file of its own: the measurement would be lost."
+        raise ParameterError(f"{path} is a file that is read", "--report", remedy)
     if place.is_dir():
         raise ParameterError(f"{path} is a folder", "--report", "Give the name of a file, such as report.html.")
     if not place.parent.is_dir():

@@ -118,7 +118,13 @@ def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> Fit:
         Data that cannot be used, or a model that does not fit the structure of the data.
     """
     unseen = prepare(held_out, model) if len(held_out) else ()
-    return fit_prepared(model, prepare(runs, model), unseen)
+    return fit_prepared(model, prepare(not_held_out(runs, held_out), model), unseen)
+
+
+def not_held_out(runs: Sequence[Run], held_out: Sequence[Run]) -> list[Run]:
+    """Return the runs that are not held out: what is only predicted must not be fitted as well."""
+    digests = {r.sha256 for r in held_out if r.sha256}
+    return [r for r in runs if r.sha256 not in digests and not any(r is h for h in held_out)]
 
 
 def fit_prepared(

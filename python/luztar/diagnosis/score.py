@@ -158,7 +158,7 @@ def detect(
         parts = [of(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
         if not parts:
             continue
-        # A candidate is as strong as its best column, and so is a line; cells add up, for a pattern is spread over them.
+        # A candidate is as strong as its best column, so is a line; cells add up, for a pattern is spread over them.
         joined = np.hstack(parts)
         drawn[name] = joined.sum(axis=1) if name in ("state", "time", "reversal") else joined.max(axis=1)
     if not drawn:
@@ -221,13 +221,11 @@ def _scores(
         residual = response - q @ (q.T @ response)
         owner = np.concatenate(owners)
         count = sum(len(r.strokes) for r in runs)
+        belongs = (owner == np.arange(count)[:, None]).astype(float)
         for i in chosen:
             z = np.concatenate([w(c[k]) for w, c, k in zip(whiten, features[i].columns, keep, strict=True)])
             z = z - q @ (q.T @ z)
-            product = z * residual[:, None]
-            scores = np.zeros((count, z.shape[1]))
-            inside_strokes = owner >= 0
-            np.add.at(scores, owner[inside_strokes], product[inside_strokes])
+            scores = belongs @ (z * residual[:, None])
             # A column that the model explains already has nothing left but rounding.
             scores[:, np.linalg.norm(z, axis=0) < 1e-9 * np.sqrt(len(z))] = 0.0
             out[i] = scores

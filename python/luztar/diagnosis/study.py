@@ -10,7 +10,7 @@ from ..model import Model, card
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, gain, paired_error
 from .diagnose import Diagnosis, diagnose
 from .experiment import Experiment, experiment_for
-from .fit import Fit, fit_prepared
+from .fit import Fit, fit_prepared, not_held_out
 from .floor import NoiseFloor, noise_floor
 from .prepare import Prepared, prepare
 
@@ -161,7 +161,7 @@ def study(
     progress : callable, optional
         Called with (what is being done, done, total).
     """
-    prepared = prepare(runs, model)
+    prepared = prepare(not_held_out(runs, held_out), model)
     unseen = prepare(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
     steps, looks = climb(_Loop(model, prepared, unseen, floor, progress), max_effects)

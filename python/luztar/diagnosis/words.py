@@ -97,11 +97,12 @@ def ladder_lines(study: Study) -> list[str]:
         name = s.added or "as given"
         if s.added and len(s.set) > 1:
             name += f" (or {', '.join(n for n in s.set if n != s.added)})"
+        ratio = e.held_out_rms / max(study.noise_floor.rms, 1e-300)
         bar = "#" * max(1, round(30 * e.held_out_rms / top)) if top > 0 else ""
         mark = "  provisional" if s.provisional else ""
-        lines.append(f"  {name:<38} {number(e.held_out_rms):>9} {e.unit}  x{e.floor_ratio:4.1f} floor  {bar}{mark}")
+        lines.append(f"  {name:<38} {number(e.held_out_rms):>9} {e.unit}  x{ratio:4.1f} floor  {bar}{mark}")
     floor = study.noise_floor
-    bar = "." * max(1, round(30 * floor.rms / top)) if top > 0 else ""
+    bar = "." * min(30, max(1, round(30 * floor.rms / top))) if top > floor.rms / 30 else "." * 30
     lines.append(f"  {'noise floor':<38} {number(floor.rms):>9} {floor.unit}               {bar}")
     return lines
 
