@@ -9,7 +9,7 @@ import pytest
 
 from command_line import luztar
 
-COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "explain")
+COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "explain")
 
 OPTIONS = {
     "demo": "--out --json --debug",
