@@ -18,6 +18,8 @@ OPTIONS = {
     "diagnose": "--model --map --unit --held-out --band --resample --json --debug",
     "study": "--model --map --unit --held-out --band --resample --max-effects --json --report --debug",
     "fit": "--model --add --map --unit --held-out --band --resample --json --debug",
+    "plan": "--structure --encoder-deg --step-m --rate --speed --speeds --angle --travel-m --runs --strokes --minutes "
+    "--noise --friction --json --report --debug",
     "explain": "--json --debug",
 }
 
