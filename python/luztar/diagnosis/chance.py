@@ -47,6 +47,14 @@ def studentised(scores: np.ndarray, flips: np.ndarray) -> np.ndarray:
     return np.divide(sums**2, scale, out=np.zeros_like(sums), where=scale > 0)
 
 
+def studentised_pairs(scores: np.ndarray, flips: np.ndarray) -> np.ndarray:
+    """Return the same for pairs of neighbouring columns taken together (sine and cosine), shape (draws, pairs)."""
+    scale = np.sum(scores**2, axis=0)
+    squares = (flips @ scores) ** 2
+    pairs, scales = (v[..., 0::2] + v[..., 1::2] for v in (squares, scale))
+    return np.divide(pairs, scales, out=np.zeros_like(pairs), where=scales > 0)
+
+
 def one_sided(gains: np.ndarray, flips: np.ndarray) -> np.ndarray:
     """Return squared studentised sums of what may only count when it is positive, shape (draws, features)."""
     scale = np.sum(gains**2, axis=0)

@@ -80,7 +80,7 @@ def points(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
         case "reach":
             return np.linspace(low, high, count) * max(float(np.abs(r.motion).max()) for r in runs)
         case "width":
-            return np.geomspace(0.02, 0.2, count) * span
+            return np.geomspace(0.015, 0.1, count) * span
         case "time":
             return np.geomspace(2.0, max(4.0, max(r.duration_s for r in runs)), count)
         case "rest":
@@ -106,8 +106,9 @@ def limits(parameter: Parameter, runs: Sequence[Prepared]) -> tuple[float, float
     first, last = float(grid[0]), float(grid[-1])
     if kind == "travel":
         return first, parameter.high
-    if kind in ("resolution", "reach"):
-        # Beyond, the law is another effect's: a blunt break-away is presliding, a wide dead zone an end stop.
+    if kind in ("resolution", "reach", "width"):
+        # Beyond, the law is another effect's: a blunt break-away is presliding, a wide dead zone an end stop, a spot
+        # as wide as the range any curve.
         return first, last
     if is_geometric(parameter):
         # Beyond four times the grid the law is a simpler one (a constant, or nothing).

@@ -10,12 +10,13 @@ right ones: naming is by held-out error after refitting (see ``candidates``).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .chance import one_sided, p_values, signs, studentised
+from .chance import one_sided, p_values, signs, studentised, studentised_pairs
 from .equations import Weights
 from .floor import hats, travel_since_reversal
 from .prepare import Prepared
@@ -25,6 +26,13 @@ POSITION_CELLS = 12
 SPEED_CELLS = 5
 TIME_CELLS = 8
 TRAVEL_CELLS = (0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5)
+PRODUCT_CELLS = 8
+# Spectral lines are looked for from slower than a stroke's own changes up to the band's upper edge, in steps of half a
+# line's width; so many at a time, that the columns stay small.
+SLOWEST_LINE_HZ = 0.3
+LINES_AT_A_TIME = 40
+# Kinds of what repeats.
+LACK = ("state", "time", "reversal", "spectrum")
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,7 @@ class Feature:
     Attributes
     ----------
     name : str
-        The candidate, or ``state``, ``time``, ``reversal``.
+        The candidate, or a kind of :data:`LACK`.
     columns : tuple of ndarray, shape (n, q)
         Per run.
     inside_zones : bool
@@ -59,7 +67,7 @@ class Detection:
     lack_of_fit : float
         Adjusted p-value that nothing repeats which the model lacks, without reference to any candidate.
     along : str
-        Where it repeats most: ``state``, ``time`` or ``reversal``.
+        Where it repeats most: a kind of :data:`LACK`.
     strokes : int
     """
 
@@ -86,12 +94,30 @@ def cells(runs: Sequence[Prepared]) -> list[Feature]:
         ways = [(up > 0)[:, None], (up < 0)[:, None]]
         place = hats(r.motion, np.linspace(low, high, POSITION_CELLS))
         speed = hats(np.abs(r.speed), speeds) if speeds.size > 1 else np.zeros((r.motion.size, 0))
-        state.append(np.hstack([block * way for block in (place, speed) for way in ways]))
+        # What depends on place and speed together (a product) leaves nothing in either alone.
+        product = hats(r.motion, np.linspace(low, high, PRODUCT_CELLS)) * r.speed[:, None]
+        state.append(np.hstack([*(block * way for block in (place, speed) for way in ways), product]))
         clock = hats(r.time_s, np.linspace(0.0, longest, TIME_CELLS))
         time.append(np.hstack([clock, clock * up[:, None]]))
         since = hats(travel_since_reversal(r), (high - low) * np.array(TRAVEL_CELLS))[:, :-1]
         travel.append(np.hstack([since * way for way in ways]))
     return [Feature("state", tuple(state)), Feature("time", tuple(time)), Feature("reversal", tuple(travel))]
+
+
+def lines(runs: Sequence[Prepared], band_hz: float) -> list[Feature]:
+    """Return sines and cosines of time, as pairs of neighbouring columns, for the search for spectral lines."""
+    longest = max(r.duration_s for r in runs)
+    frequencies = np.arange(SLOWEST_LINE_HZ, band_hz, 0.5 / longest)
+    found = []
+    for part in np.array_split(frequencies, max(1, math.ceil(frequencies.size / LINES_AT_A_TIME))):
+        if not part.size:
+            continue
+        columns = []
+        for r in runs:
+            angle = 2.0 * np.pi * np.outer(r.time_s, part)
+            columns.append(np.stack([np.sin(angle), np.cos(angle)], axis=2).reshape(r.time_s.size, -1))
+        found.append(Feature("spectrum", tuple(columns)))
+    return found
 
 
 def detect(
@@ -121,25 +147,25 @@ def detect(
         as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
-    features = [*candidates, *cells(runs)]
+    features = [*candidates, *cells(runs), *lines(runs, weights.band_hz)]
     scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
     live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
     flips = signs(len(strokes))
-    lack = {"state", "time", "reversal"}
     names = [f.name for f in features]
     drawn = {}
     for name in dict.fromkeys(names):
-        parts = [studentised(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
+        of = studentised_pairs if name == "spectrum" else studentised
+        parts = [of(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
         if not parts:
             continue
-        # A candidate is as strong as its best column; cells add up, for a pattern is spread over many of them.
+        # A candidate is as strong as its best column, and so is a line; cells add up, for a pattern is spread over them.
         joined = np.hstack(parts)
-        drawn[name] = joined.sum(axis=1) if name in lack else joined.max(axis=1)
+        drawn[name] = joined.sum(axis=1) if name in ("state", "time", "reversal") else joined.max(axis=1)
     if not drawn:
         return Detection(1.0, {}, 1.0, "state", len(strokes))
     keys = list(drawn)
     single = p_values(np.column_stack([drawn[k] for k in keys]))
-    family = np.array([k in lack for k in keys])
+    family = np.array([k in LACK for k in keys])
     # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
     groups = [np.flatnonzero(~family)] + [np.array([i]) for i in np.flatnonzero(family)]
     if gains is not None and gains.size:
@@ -155,7 +181,7 @@ def detect(
         for i, k in enumerate(keys)
         if candidate[i]
     }
-    lack_keys = [k for k in keys if k in lack]
+    lack_keys = [k for k in keys if k in LACK]
     lack_single = single[:, family]
     if not lack_keys:
         return Detection(float(overall[0]), adjusted, 1.0, "state", len(strokes))

@@ -11,12 +11,15 @@ from .equations import start_uncertainty_s
 from .fit import Fit
 from .grids import points, word
 from .score import Detection
+from .values import effect_values
 
 # One level over all tests of a look.
 ALPHA = 0.05
 # Fewer strokes than this say nothing about chance; up to MANY_STROKES a name needs a gain in every fold.
 FEWEST_STROKES = 6
 MANY_STROKES = 10
+# A rest that repeats but is this close to the noise floor is no failure of the model.
+ABOVE_FLOOR = 1.1
 # More than this many candidates that cannot be told apart are no answer.
 LARGEST_SET = 3
 
@@ -79,10 +82,18 @@ def folded(fitted: Fit, found: Sequence[Candidate]) -> dict[str, str]:
     return out
 
 
+def admissible(fitted: Fit, c: Candidate) -> bool:
+    """Whether a candidate's best values are inside its card's bounds: a negative inertia explains nothing."""
+    if c.search.best is None:
+        return False
+    values = effect_values(fitted.problem, c.search.best, c.name)
+    return all(p.low <= values[p.key] <= p.high for p in c.card.parameters if p.role == "linear")
+
+
 def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judgement:
     """Decide what a look at the candidates allows to say."""
     simpler = folded(fitted, found)
-    rivals = [c for c in found if c.name not in simpler]
+    rivals = [c for c in found if c.name not in simpler and admissible(fitted, c)]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:
         return Judgement("too_few_strokes", (), (), simpler, f"{strokes} strokes; at least {FEWEST_STROKES} are needed")
@@ -110,7 +121,9 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judg
         many = f"{len(real)} effects explain it equally well: this test cannot tell"
         unexplained = detection.lack_of_fit <= ALPHA and not few
         return Judgement("unexplained" if unexplained else "below_practical_size", (), names, simpler, many)
-    if detection.lack_of_fit <= ALPHA and fitted.error.floor_ratio > 1.0 and not few:
+    # The floor takes a line of the spectrum for noise; along the state it knows better.
+    above = fitted.error.floor_ratio > ABOVE_FLOOR or detection.along == "spectrum"
+    if detection.lack_of_fit <= ALPHA and above and not few:
         return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
     if few and not worth:
         why = f"{strokes} strokes can give no p-value below {p_value_floor(strokes):.2g}"
