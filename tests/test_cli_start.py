@@ -9,7 +9,7 @@ import pytest
 
 from command_line import luztar
 
-COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "explain")
+COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "explain")
 
 OPTIONS = {
     "demo": "--out --json --debug",
@@ -18,6 +18,8 @@ OPTIONS = {
     "diagnose": "--model --map --unit --held-out --band --resample --json --debug",
     "study": "--model --map --unit --held-out --band --resample --max-effects --json --report --debug",
     "fit": "--model --add --map --unit --held-out --band --resample --json --debug",
+    "plan": "--structure --encoder-deg --step-m --rate --speed --speeds --angle --travel-m --runs --strokes --minutes "
+    "--noise --friction --json --report --debug",
     "explain": "--json --debug",
 }
 

@@ -259,9 +259,9 @@ def plan(
     report: Report = None,
     debug: Debug = False,
 ) -> int:
-    """Simulate a test: which effects it will see, which it cannot tell apart.
+    """Show beforehand what a test can see.
 
-    Nothing is measured yet; the test that would tell a pair apart is named.
+    The test is simulated: how small each effect may be, which pairs cannot be told apart, and which test would do it.
     """
     from .plan import run_plan
 

@@ -120,13 +120,13 @@ def advice(fitted: Fit, state: State, effect: str, rivals: Sequence[str]) -> Adv
 
 def lookalikes(fitted: Fit, state: State, effect: str) -> tuple[str, ...]:
     """Return the rivals that a fitted effect resembles on the strokes recorded, the nearest first."""
-    truth, sensor = _taken(fitted, state, effect)
-    known = truth.terms.effects
+    known = state.terms.effects
     if any(card(n, fitted.model.structure_name).channel for n in known):
         return ()
     possible = [n for n in LOOKALIKES.get(effect, ()) if n not in known and _has_meaning(n, fitted)]
     if not possible:
         return ()
+    truth, sensor = _taken(fitted, state, effect)
     rehearsal = Rehearsal.of([_as_recorded(fitted, sensor.rate_hz).make(1.0 / sensor.rate_hz, 1)], sensor, truth)
     found = {n: rehearsal.cosine(n) for n in possible}
     return tuple(sorted((n for n in found if found[n] > ALIKE), key=lambda n: -found[n]))

@@ -14,6 +14,8 @@ from ..model import Model
 
 # Samples per period of the band's upper edge. The kinematics keep 2.5 times the band, which wants more than 11.
 SAMPLES_PER_BAND_PERIOD = 24.0
+# A start wants this many samples per second, however narrow the band.
+SLOWEST_HZ = 50.0
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Sensor:
 
 def planning_rate_hz(rate_hz: float, band_hz: float) -> float:
     """Return the rate of a rehearsal: no more samples than its band needs."""
-    return min(rate_hz, SAMPLES_PER_BAND_PERIOD * band_hz)
+    return min(rate_hz, max(SAMPLES_PER_BAND_PERIOD * band_hz, SLOWEST_HZ))
 
 
 def rehearse(positions: Sequence[np.ndarray], sensor: Sensor, model: Model) -> tuple[Prepared, ...]:
