@@ -108,14 +108,6 @@ impl Recording {
         Ok(kept.into_pyarray(py))
     }
 
-    fn state<'py>(&self, py: Python<'py>, model: Terms) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let model = terms(model);
-        Ok(py
-            .detach(|| self.0.state(&model))
-            .map_err(CoreError)?
-            .into_pyarray(py))
-    }
-
     fn start_shift<'py>(
         &self,
         py: Python<'py>,

@@ -60,6 +60,16 @@ impl Phases {
         }
         phases
     }
+
+    /// Every `stride`-th sample.
+    pub fn strided(&self, stride: usize) -> Self {
+        let kept = |v: &[f64]| v.iter().step_by(stride).copied().collect();
+        Self {
+            rest_s: kept(&self.rest_s),
+            travelled: kept(&self.travelled),
+            direction: kept(&self.direction),
+        }
+    }
 }
 
 /// The turning points of `position`: extremes that are followed by a return of more than `hysteresis`.
