@@ -15,7 +15,7 @@ import numpy as np
 
 from ..model import Card, cards
 from .fit import Fit
-from .profile import Problem, State, with_effect
+from .profile import Problem, State, state
 from .score import Feature
 from .search import Search
 from .terms import inner_grid
@@ -117,7 +117,7 @@ def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
     tested = set(np.linspace(0, len(points) - 1, min(TESTED_POINTS, len(points))).round().astype(int).tolist())
     features: list[Feature] = []
     for i, inner in enumerate(points):
-        tried = with_effect(problem, base, c.name, inner)
+        tried = state(problem, base.terms.having(c.name, inner))
         search.visit(tried)
         if i in tested:
             features += _features(problem, base, tried, c)

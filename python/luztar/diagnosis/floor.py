@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .equations import Blocks, loss
-from .folds import Folds, held_out
+from .folds import Folds
 from .prepare import Prepared
 
 # Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
@@ -140,7 +140,7 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
     folds = Folds.of(blocks)
     unseen = inside
     if folds.count > 1:
-        losses, _ = held_out(blocks, folds)
+        losses, _ = blocks.held_out(folds)
         # A hat that only one run visits has no prediction there: such strokes say nothing about the noise. The median
         # over strokes, scaled to a mean by the training's own ratio, is deaf to them.
         per_stroke = losses / np.maximum(blocks.samples, 1)

@@ -71,6 +71,8 @@ class Prepared:
     zone : ndarray of bool, shape (n,)
         True at rest and around reversals.
     strokes : tuple of Stroke
+    used : tuple of (int, int)
+        The usable samples of every stroke, ``[first, last)``.
     step_s : float
         Seconds between kept samples.
     duration_s : float
@@ -88,6 +90,7 @@ class Prepared:
     usable: np.ndarray
     zone: np.ndarray
     strokes: tuple[Stroke, ...]
+    used: tuple[tuple[int, int], ...]
     step_s: float
     duration_s: float
     has_load: bool
@@ -146,6 +149,10 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         raise MeasurementError("holds no stroke", run.name, f"A stroke needs {_least_travel(model, span)} of travel.")
     memory = math.ceil(FILTER_MEMORY_PERIODS / band / step_s)
     strokes = _strokes(number, found, every, memory, position.size)
+    from_, to = _usable(
+        position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
+    )
+    place = np.arange(position.size)
     return Prepared(
         name=run.name,
         recording=recording,
@@ -154,11 +161,10 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         speed=speed,
         acceleration=acceleration,
         effort=recording.measured(effort),
-        usable=_usable(
-            position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
-        ),
+        usable=(place >= from_) & (place < to),
         zone=_zone(speed, structure.rest_speed, ZONE_WIDTH_PERIODS / band / step_s),
         strokes=strokes,
+        used=tuple((min(max(s.first, from_), to), max(min(s.last, to), from_)) for s in strokes),
         step_s=step_s,
         duration_s=run.duration_s,
         has_load=load is not None,
@@ -198,13 +204,13 @@ def _strokes(
 
 def _usable(
     position: np.ndarray, first: Stroke, memory: int, unknown_travel: float, every: int, samples: int
-) -> np.ndarray:
-    start = position[first.onset]
-    travelled = np.abs(position - start) > unknown_travel
+) -> tuple[int, int]:
+    """Return the usable samples, ``[from, to)``: after the first motion has fixed the friction state."""
+    travelled = np.abs(position - position[first.onset]) > unknown_travel
     travelled[: first.onset] = False
     known = int(np.argmax(travelled)) if travelled.any() else position.size
-    place = np.arange(position.size)
-    return (place >= max(known, first.onset) + memory) & (place * every < samples - DERIVATIVE_REACH)
+    to = max(0, math.ceil((samples - DERIVATIVE_REACH) / every))
+    return min(max(known, first.onset) + memory, to), to
 
 
 def _zone(speed: np.ndarray, rest_speed: float | None, width: float) -> np.ndarray:

@@ -114,7 +114,9 @@ mod tests {
                 .get(Key::new("b", &[i as f64], None), make(1.0))
                 .unwrap();
             let again = cache
-                .get(first.clone(), || -> Result<f64, ()> { unreachable!("kept") })
+                .get(first.clone(), || -> Result<f64, ()> {
+                    unreachable!("kept")
+                })
                 .unwrap();
             assert_eq!(*again, 0.0);
         }

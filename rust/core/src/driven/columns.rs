@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::cache::Key;
 use super::contact::{Slide, slide};
+use super::equations::{Blocks, Rows};
 use super::recording::Recording;
 use crate::Error;
 use crate::effects::{CATALOGUE, Channels, Contact, Effect, Kind, find};
@@ -101,6 +102,39 @@ impl Recording {
         Ok(all)
     }
 
+    /// The normal equations of a model, one block per stroke.
+    ///
+    /// `given` are coefficients known beforehand, by the place of their column: these columns are not among those of
+    /// the blocks, their part is taken off the measurement.
+    ///
+    /// # Errors
+    /// As [`Recording::columns`]; [`Error::Length`] for a measurement that is not as long as the comparison.
+    pub fn normal_equations(
+        &self,
+        terms: &[Term],
+        given: &[(usize, f64)],
+        effort: &[f64],
+        strokes: &[Rows],
+    ) -> Result<Blocks, Error> {
+        let every: Vec<usize> = (0..terms.len()).collect();
+        let columns = self.columns(terms, &every)?;
+        let shift = self.start_shift(terms)?;
+        crate::error::require_same_length("effort", effort, "comparison", shift.len())?;
+        let mut left = effort.to_vec();
+        for (place, coefficient) in given {
+            for (y, c) in left.iter_mut().zip(&columns[*place]) {
+                *y -= coefficient * c;
+            }
+        }
+        let free = columns
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| given.iter().all(|(known, _)| known != place))
+            .map(|(_, column)| column.as_slice());
+        let all: Vec<&[f64]> = free.chain([shift.as_slice(), &left]).collect();
+        Ok(Blocks::of(&all, strokes))
+    }
+
     /// Whether the run holds what the law looks at.
     fn can_make(&self, effect: &Effect) -> Result<(), Error> {
         let missing = |what, known: &str| {
@@ -161,35 +195,38 @@ impl Recording {
     /// As [`Recording::columns`].
     pub fn start_shift(&self, terms: &[Term]) -> Result<Vec<f64>, Error> {
         let (contact, delay_s) = self.contact(terms)?;
-        let filtered = self
-            .columns_kept
-            .get(Key::new("start shift", &[], Some(&contact)), || {
-                let slide = self.slide(&contact);
-                let mut near = vec![0.0; slide.rate.len()];
-                for stroke in self.strokes() {
-                    let onset = self.law_sample(stroke.onset);
-                    // The onset is the last sample at rest; the parabola into the first step begins before it.
-                    let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
-                    let from = onset.saturating_sub((lead_s * self.law_rate_hz).ceil() as usize);
-                    let start = self.seen[onset];
-                    let gone = |i: &usize| {
-                        (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution()
-                    };
-                    let to = (onset..near.len()).find(gone).unwrap_or(near.len());
-                    for (near, rate) in near[from..to].iter_mut().zip(&slide.rate[from..to]) {
-                        *near = rate * self.law_rate_hz;
+        let filtered =
+            self.columns_kept
+                .get(Key::new("start shift", &[], Some(&contact)), || {
+                    let slide = self.slide(&contact);
+                    let mut near = vec![0.0; slide.rate.len()];
+                    for stroke in self.strokes() {
+                        let onset = self.law_sample(stroke.onset);
+                        // The onset is the last sample at rest; the parabola into the first step begins before it.
+                        let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
+                        let from =
+                            onset.saturating_sub((lead_s * self.law_rate_hz).ceil() as usize);
+                        let start = self.seen[onset];
+                        let gone = |i: &usize| {
+                            (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution()
+                        };
+                        let to = (onset..near.len()).find(gone).unwrap_or(near.len());
+                        for (near, rate) in near[from..to].iter_mut().zip(&slide.rate[from..to]) {
+                            *near = rate * self.law_rate_hz;
+                        }
                     }
-                }
-                Ok(vec![self.filtered(&near)?])
-            })?;
+                    Ok(vec![self.filtered(&near)?])
+                })?;
         Ok(self.late(&filtered[0], delay_s))
     }
 
     /// What a contact does along the record, kept for the other effects that share it.
     fn slide(&self, contact: &Contact) -> Arc<Slide> {
-        let made = self.slides_kept.get(Key::new("slide", &[], Some(contact)), || {
-            Ok::<_, Infallible>(slide(contact, &self.seen))
-        });
+        let made = self
+            .slides_kept
+            .get(Key::new("slide", &[], Some(contact)), || {
+                Ok::<_, Infallible>(slide(contact, &self.seen))
+            });
         match made {
             Ok(slide) => slide,
             Err(never) => match never {},

@@ -201,9 +201,7 @@ mod tests {
     fn walked(contact: &Contact, position: &[f64], pieces: usize) -> Vec<f64> {
         let fine: Vec<f64> = position
             .windows(2)
-            .flat_map(|p| {
-                (0..pieces).map(move |k| p[0] + (p[1] - p[0]) * k as f64 / pieces as f64)
-            })
+            .flat_map(|p| (0..pieces).map(move |k| p[0] + (p[1] - p[0]) * k as f64 / pieces as f64))
             .chain(position.last().copied())
             .collect();
         let mut walk = super::Walk::new(contact);
@@ -223,8 +221,15 @@ mod tests {
         for contact in [
             SHARP,
             Contact { gap: 0.3, ..SHARP },
-            Contact { exponential: true, ..SHARP },
-            Contact { exponential: true, gap: 0.3, breakaway: 0.1 },
+            Contact {
+                exponential: true,
+                ..SHARP
+            },
+            Contact {
+                exponential: true,
+                gap: 0.3,
+                breakaway: 0.1,
+            },
         ] {
             let whole = walked(&contact, &position, 1);
             let pieces = walked(&contact, &position, 64);
@@ -260,8 +265,15 @@ mod tests {
         let at = |k: usize| slid.state[5 * k + 2];
         assert!((at(1) - 1.0).abs() < 1e-14, "in contact while moving up");
         assert_eq!(at(2), 0.0, "inside the gap after turning");
-        assert_eq!(at(3), 0.0, "still inside after 1.0 of travel, break-away included");
-        assert!((at(4) + 0.5).abs() < 1e-12, "breaking away on the other side");
+        assert_eq!(
+            at(3),
+            0.0,
+            "still inside after 1.0 of travel, break-away included"
+        );
+        assert!(
+            (at(4) + 0.5).abs() < 1e-12,
+            "breaking away on the other side"
+        );
         assert!((at(5) + 1.0).abs() < 1e-12, "sliding on the other side");
         let engaged = slid.engaged.unwrap();
         for (k, felt) in [(1, 1.0), (2, 0.0), (3, 0.0), (4, 0.5), (5, 1.0)] {
@@ -282,7 +294,10 @@ mod tests {
 
     #[test]
     fn dahl_approaches_full_friction_by_the_exponential() {
-        let dahl = Contact { exponential: true, ..SHARP };
+        let dahl = Contact {
+            exponential: true,
+            ..SHARP
+        };
         let x: Vec<f64> = [0.0, 0.1, 0.1, 0.0].iter().flat_map(|x| [*x; 5]).collect();
         let s = slide(&dahl, &x).state;
         let up = 1.0 - (-1.0_f64).exp();

@@ -274,15 +274,12 @@ fn strides(sample_rate_hz: f64, band: Band) -> (usize, usize) {
     } else {
         over(sample_rate_hz, LAWS_PER_BAND_PERIOD)
     };
-    match band.decimate.map(|every| every.max(1)) {
-        Some(every) => {
-            let stride = (1..=longest.min(every)).rev().find(|k| every % k == 0);
-            (stride.unwrap_or(1), every)
-        }
-        None => {
-            let kept = over(sample_rate_hz / longest as f64, SAMPLES_PER_BAND_PERIOD);
-            (longest, longest * kept)
-        }
+    if let Some(every) = band.decimate {
+        let divides = (1..=longest).rev().find(|k| every % k == 0);
+        (divides.unwrap_or(1), every.max(1))
+    } else {
+        let kept = over(sample_rate_hz / longest as f64, SAMPLES_PER_BAND_PERIOD);
+        (longest, longest * kept)
     }
 }
 
