@@ -8,6 +8,7 @@ mod equations;
 mod kinematics;
 mod recording;
 mod resolution;
+mod rests;
 mod staircase;
 mod strokes;
 

@@ -4,8 +4,9 @@ use super::cache::Cache;
 use super::contact::Slide;
 use super::kinematics::derivative;
 use super::resolution::{Resolution, span};
+use super::rests::{CERTAIN, held, noise};
 use super::staircase::join_steps;
-use super::strokes::{Phases, Stroke, strokes};
+use super::strokes::{Phases, Stroke, strokes, turning_points};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
 use crate::signal::{AntiAlias, CutoffAt, Edges, LowPass, Passes, ZeroPhase};
@@ -16,6 +17,16 @@ const POLES: usize = 4;
 /// The kinematics keep this many times the bandwidth of the comparison: a law such as `exp(-(w/v)^2)` makes higher
 /// harmonics of the speed, and what lies beyond 2.5 times the band changes nothing below it.
 const KINEMATICS_OVER_BAND: f64 = 2.5;
+
+/// What a sensor trembles faster than this many times the bandwidth of the comparison is no start of a motion.
+const TREMBLE_OVER_BAND: f64 = 8.0;
+
+/// Noise below this share of the range is none: the position is followed as it is.
+const NEGLIGIBLE_NOISE: f64 = 1e-6;
+
+/// A travel below this share of the range tells nothing about a steering mechanism: positions that are exact, from a
+/// simulation say, are taken to resolve no more. Their break-away would else be found whatever it is.
+const FINEST: f64 = 1e-4;
 
 /// The comparison keeps at least this many samples per period of the band's upper edge: at four times the edge the
 /// low pass, 8 poles in all, is down to 1.5e-5, so nothing folds back.
@@ -66,7 +77,7 @@ pub struct Recording {
     pub(super) position: Vec<f64>,
     pub(super) speed: Vec<f64>,
     pub(super) acceleration: Vec<f64>,
-    /// What the contact follows: an encoder's crossings joined, any other sensor smoothed.
+    /// What the contact follows: an encoder's crossings joined, a noisy sensor's rests held.
     pub(super) seen: Vec<f64>,
     pub(super) slowest_speed: f64,
     pub(super) turn_rad_per_unit: f64,
@@ -128,22 +139,34 @@ impl Recording {
                 .map_or_else(|| Ok(x.to_vec()), |filter| run(filter, x))
         };
         let mut smooth = smoothed(position)?;
-        let resolution = Resolution::of(position, &smooth);
+        let mut resolution = Resolution::of(position, &smooth);
         let seen = if resolution.quantised {
             let joined = join_steps(position);
             smooth = smoothed(&joined)?;
             joined
+        } else if resolution.step > NEGLIGIBLE_NOISE * span(&smooth) {
+            // Noise faster than any start of a motion is taken off first.
+            let quick_hz = TREMBLE_OVER_BAND * band.upper_hz;
+            let (quick, quick_hz) = if quick_hz < 0.45 * sample_rate_hz {
+                (
+                    run(&mut zero_phase(quick_hz, sample_rate_hz)?, position)?,
+                    quick_hz,
+                )
+            } else {
+                (position.to_vec(), 0.5 * sample_rate_hz)
+            };
+            let certain = CERTAIN * noise(&quick, &smooth, (kinematic_hz / quick_hz).min(0.9));
+            resolution.step = 2.0 * certain;
+            let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
+            let quiet = held(&quick, &smooth, &turns, certain);
+            smooth = smoothed(&quiet)?;
+            quiet
         } else {
-            smooth.clone()
+            position.to_vec()
         };
-        let strokes = strokes(
-            &smooth,
-            &seen,
-            resolution.step,
-            sample_rate_hz,
-            travel.hysteresis,
-            travel.minimum,
-        );
+        resolution.step = resolution.step.max(FINEST * span(&smooth));
+        let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
+        let strokes = strokes(&turns, &seen, resolution.step, sample_rate_hz);
         if let Some(load) = load_n {
             crate::error::require_same_length("load", load, "position", position.len())?;
             require_finite("load", load)?;
