@@ -147,6 +147,9 @@ def solve(gram: np.ndarray, bound: float = np.inf) -> np.ndarray:
         return free
     last = float(np.copysign(bound, free[-1]))
     q = p - 1
+    if q == 0:
+        # A model without a free coefficient.
+        return np.array([last])
     return np.append(_solve(gram[:q, :q], gram[:q, p] - last * gram[:q, q]), last)
 
 

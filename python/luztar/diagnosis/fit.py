@@ -16,7 +16,8 @@ from .floor import NoiseFloor, friction_level, noise_floor
 from .folds import Folds
 from .intervals import Estimate, estimates
 from .misfit import Misfit, misfit
-from .prepare import Prepared, prepare
+from .plausible import prepare_measured
+from .prepare import Prepared
 from .profile import Problem, State, owners, state
 from .search import Search
 from .terms import inner_grid, start_terms
@@ -117,8 +118,8 @@ def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> Fit:
     MeasurementError, ModelError
         Data that cannot be used, or a model that does not fit the structure of the data.
     """
-    unseen = prepare(held_out, model) if len(held_out) else ()
-    return fit_prepared(model, prepare(not_held_out(runs, held_out), model), unseen)
+    unseen = prepare_measured(held_out, model) if len(held_out) else ()
+    return fit_prepared(model, prepare_measured(not_held_out(runs, held_out), model), unseen)
 
 
 def not_held_out(runs: Sequence[Run], held_out: Sequence[Run]) -> list[Run]:

@@ -13,13 +13,11 @@ from .. import _core
 from .._arrays import vector
 from ..errors import MeasurementError
 from ..model import Model
+from .resolved import FILTER_MEMORY_PERIODS, require_resolved
 
 if TYPE_CHECKING:
     from ..measurement import Run
 
-# The low pass mixes the time before into the time after an instant: its impulse response, 8 poles in all, has decayed
-# to 1 % after 1.5 periods of the upper edge.
-FILTER_MEMORY_PERIODS = 1.5
 # Speed and acceleration take two samples on either side each; nearer to the end they are one-sided.
 DERIVATIVE_REACH = 4
 # The reversal zone reaches this far beyond the stretch of low speed (interface: 0.15 s at the 6 Hz of a rig).
@@ -144,6 +142,7 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
     found = recording.strokes()
     if not found:
         raise MeasurementError("holds no stroke", run.name, f"A stroke needs {_least_travel(model, span)} of travel.")
+    require_resolved(run.name, model, band, rate, run.duration_s, position.size, len(found))
     memory = math.ceil(FILTER_MEMORY_PERIODS / band / step_s)
     strokes = _strokes(number, found, every, memory, position.size)
     return Prepared(

@@ -12,7 +12,8 @@ from .diagnose import Diagnosis, diagnose
 from .experiment import Experiment, experiment_for
 from .fit import Fit, fit_prepared, not_held_out
 from .floor import NoiseFloor, noise_floor
-from .prepare import Prepared, prepare
+from .plausible import prepare_measured
+from .prepare import Prepared
 
 if TYPE_CHECKING:
     import os
@@ -161,8 +162,8 @@ def study(
     progress : callable, optional
         Called with (what is being done, done, total).
     """
-    prepared = prepare(not_held_out(runs, held_out), model)
-    unseen = prepare(held_out, model) if len(held_out) else ()
+    prepared = prepare_measured(not_held_out(runs, held_out), model)
+    unseen = prepare_measured(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
     steps, looks = climb(_Loop(model, prepared, unseen, floor, progress), max_effects)
     return Study(tuple(steps), tuple(looks), floor, runs, held_out)
@@ -228,7 +229,7 @@ def _without_needless(loop: _Loop, fitted: Fit, added: list[str]) -> tuple[Fit, 
     An effect may have stood in for others that were added later; what is left must each earn its place.
     """
     while len(added) > 1:
-        trials = [(name, loop.fit(fitted.model - name)) for name in added]
+        trials = [(name, loop.fit(fitted.model - name)) for name in added if not _needed(fitted.model, name)]
         for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
             share, errors = gain(without.search, fitted.search)
             if share < PRACTICAL_GAIN or errors < SET_ERRORS:
@@ -250,7 +251,7 @@ def _simplest(
     improved = len(added) > 1
     while improved:
         improved = False
-        for name in added:
+        for name in (n for n in added if not _needed(fitted.model, n)):
             for other in offered.get(name, ()):
                 if other == name or other in fitted.model.effects:
                     continue
@@ -273,6 +274,9 @@ def _each_in_its_place(
     """Look again for every effect with the others in place: a better one replaces it, equal ones join its set."""
     offered: dict[str, tuple[str, ...]] = {}
     for name in list(added):
+        if _needed(fitted.model, name):
+            offered[name] = (name,)
+            continue
         without = loop.fit(fitted.model - name)
         look = loop.look(without, f"in the place of {name}")
         if look.named and look.named[0] != name and name not in look.named:
@@ -295,7 +299,9 @@ def _ladder(
     left = list(added)
     while left:
         model = steps[-1].fit.model
-        trials = {name: loop.fit(_started(model + name, start, fitted)) for name in left} if len(left) > 1 else {}
+        # What stands on an effect that is still to be added waits for it.
+        ready = [n for n in left if card(n, model.structure_name).needs not in left]
+        trials = {name: loop.fit(_started(model + name, start, fitted)) for name in ready} if len(left) > 1 else {}
         name = min(trials, key=lambda n: trials[n].search.held_out_loss) if trials else left[0]
         step_fit = trials.get(name) or fitted
         members = offered.get(name, (name,))
@@ -305,6 +311,11 @@ def _ladder(
         steps.append(Step(name, members, provisional, step_fit, experiment_for(step_fit, members)))
         left.remove(name)
     return steps
+
+
+def _needed(model: Model, name: str) -> bool:
+    """Whether another effect of the model makes no sense without this one."""
+    return any(card(e, model.structure_name).needs == name for e in model.effects)
 
 
 def _started(model: Model, start: dict[str, float], fitted: Fit) -> Model:

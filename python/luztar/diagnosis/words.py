@@ -42,7 +42,7 @@ def error_line(fit: Fit) -> str:
 
 def fit_text(fit: Fit) -> str:
     """Return a fit as text."""
-    head = f"{fit.model.structure_name}: {', '.join(fit.model.effects)}"
+    head = f"{fit.model.structure_name}: {', '.join(fit.model.effects) or 'no effects'}"
     return "\n".join([head, error_line(fit), *parameter_lines(fit.parameters)])
 
 

@@ -139,7 +139,9 @@ impl Recording {
         let columns = py
             .detach(|| self.0.columns(&model, &wanted))
             .map_err(CoreError)?;
-        let shape = [columns.len(), columns.first().map_or(0, Vec::len)];
+        // Terms without a column of their own (a delay alone) make none, of the run's length all the same.
+        let kept = || self.0.len().div_ceil(self.0.decimate());
+        let shape = [columns.len(), columns.first().map_or_else(kept, Vec::len)];
         columns.concat().into_pyarray(py).reshape(shape)
     }
 }
