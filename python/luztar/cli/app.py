@@ -299,7 +299,7 @@ def explain(
     else:
         from ..model import card
 
-        found = card(effect)
+        found = card(effect.strip().lower().replace("-", "_").replace(" ", "_"))
         say({"schema": 1, **found.to_dict()} if json else card_text(found))
     return exits.DONE
 

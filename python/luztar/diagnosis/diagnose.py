@@ -14,6 +14,7 @@ from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
 from .fit import Fit, folded, predict
+from .given import given_fit
 from .intervals import Estimate
 from .misfit import rms, usable
 from .prepare import Prepared
@@ -149,6 +150,8 @@ class Diagnosis:
 
         return diagnosis_text(self)
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -171,6 +174,7 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
     progress : callable, optional
         Called with (done, total).
     """
+    fitted = given_fit("diagnose", fitted)
     found, features = try_all(fitted, progress)
     before = baseline(fitted).losses
     gains = np.column_stack([before - c.search.losses for c in found]) if found else None

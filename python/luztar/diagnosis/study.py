@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from ..errors import ParameterError
 from ..model import Model, card
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, gain, paired_error
 from .diagnose import Diagnosis, diagnose
 from .experiment import Experiment, experiment_for
 from .fit import Fit, fit_prepared, not_held_out
 from .floor import NoiseFloor, noise_floor
+from .given import given_model, given_runs
 from .plausible import prepare_measured
 from .prepare import Prepared
 
@@ -43,7 +45,7 @@ class Step:
     added: str | None
     set: tuple[str, ...]
     provisional: bool
-    fit: Fit
+    fit: Fit = field(repr=False)
     next_experiment: Experiment | None
 
     def to_dict(self) -> dict[str, Any]:
@@ -122,6 +124,8 @@ class Study:
 
         return study_text(self)
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -142,8 +146,8 @@ class Study:
 
 def study(
     model: Model,
-    runs: Sequence[Run],
-    held_out: Sequence[Run] = (),
+    runs: Run | Sequence[Run],
+    held_out: Run | Sequence[Run] = (),
     *,
     max_effects: int = MAX_EFFECTS,
     progress: Callable[[str, int, int], None] | None = None,
@@ -154,14 +158,22 @@ def study(
     ----------
     model : Model
         Where to start.
-    runs : sequence of Run
-    held_out : sequence of Run
+    runs : Run or sequence of Run
+    held_out : Run or sequence of Run
         Only predicted: never influences a coefficient, an inner parameter, a name, an order or the stop.
     max_effects : int
         Add at most this many.
     progress : callable, optional
         Called with (what is being done, done, total).
+
+    Raises
+    ------
+    MeasurementError, ModelError, ParameterError
+        As :func:`luztar.fit`; or a negative number of effects.
     """
+    if not isinstance(max_effects, int) or isinstance(max_effects, bool) or max_effects < 0:
+        raise ParameterError(f"max_effects is {max_effects!r}", "max_effects", "Give a whole number from 0.")
+    model, runs, held_out = given_model(model), given_runs("runs", runs), given_runs("held_out", held_out)
     prepared = prepare_measured(not_held_out(runs, held_out), model)
     unseen = prepare_measured(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
@@ -180,7 +192,8 @@ class _Loop:
     progress: Callable[[str, int, int], None] | None
 
     def fit(self, model: Model) -> Fit:
-        return fit_prepared(model, self.prepared, self.unseen, self.floor)
+        # Later models start from what the first ones have found.
+        return fit_prepared(model, self.prepared, self.unseen, self.floor, located=model is not self.base)
 
     def look(self, fitted: Fit, what: str) -> Diagnosis:
         progress = self.progress
@@ -336,4 +349,5 @@ def _inner_values(model: Model, inner: Mapping[str, tuple[float, ...]]) -> dict[
         f"{name}.{p.key}": value
         for name, values in inner.items()
         for p, value in zip(card(name, model.structure_name).inner, values, strict=True)
+        if f"{name}.{p.key}" not in model.known
     }

@@ -43,7 +43,7 @@ class Run:
     sample_rate_hz : float [Hz], > 0, optional
         For arrays sampled evenly from time 0.
     units : mapping of channel to unit, optional
-        Units of the arrays given; a channel not named is in SI.
+        Units of the arrays given; a channel not named is taken as SI, with a finding.
     name : str
         What the run is called in results.
     **channels : array_like, shape (n,)
