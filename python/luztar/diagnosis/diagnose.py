@@ -136,6 +136,7 @@ class Diagnosis:
             "noise_floor": fit.noise_floor.to_dict(),
             "error": fit.error.to_dict(),
             "parameters": {k: v.to_dict() for k, v in fit.parameters.items()},
+            "flags": [f.to_dict() for f in fit.flags],
             "where": [r.to_dict() for r in self.where],
             "candidates": [c.to_dict() for c in self.candidates],
             "lack_of_fit": {"p_value": self.detection.lack_of_fit, "along": self.detection.along},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -12,6 +13,7 @@ import numpy as np
 from ..errors import ModelError
 from ..model import Model, card
 from .equations import Weights
+from .flags import Flag, flags_of
 from .floor import NoiseFloor, friction_level, noise_floor
 from .folds import Folds
 from .given import given_model, given_runs
@@ -70,6 +72,11 @@ class Fit:
         """Measured less modelled, per run, at the kept samples."""
         return tuple(r.effort - p for r, p in zip(self.runs, self.predicted, strict=True))
 
+    @functools.cached_property
+    def flags(self) -> tuple[Flag, ...]:
+        """What is odd about the parameters: at a bound, without influence, or friction that drives the motion."""
+        return flags_of(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as the JSON interface prints it."""
         return {
@@ -80,6 +87,7 @@ class Fit:
             "noise_floor": self.noise_floor.to_dict(),
             "error": self.error.to_dict(),
             "parameters": {k: v.to_dict() for k, v in self.parameters.items()},
+            "flags": [f.to_dict() for f in self.flags],
         }
 
     def __str__(self) -> str:

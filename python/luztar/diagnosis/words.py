@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..model import card
+from .flags import flag_lines
 
 if TYPE_CHECKING:
     from .compare import Comparison
@@ -43,7 +44,7 @@ def error_line(fit: Fit) -> str:
 def fit_text(fit: Fit) -> str:
     """Return a fit as text."""
     head = f"{fit.model.structure_name}: {', '.join(fit.model.effects) or 'no effects'}"
-    return "\n".join([head, error_line(fit), *parameter_lines(fit.parameters)])
+    return "\n".join([head, error_line(fit), *parameter_lines(fit.parameters), *flag_lines(fit.flags)])
 
 
 def comparison_text(comparison: Comparison) -> str:
@@ -77,7 +78,7 @@ def diagnosis_text(look: Diagnosis) -> str:
     lines = [verdict_sentence(look.verdict, look.named, look.fit.model.structure_name)]
     if look.judgement.why:
         lines.append(f"({look.judgement.why})")
-    lines += [error_line(look.fit), *_where(look.where), "candidates by unseen error:"]
+    lines += [error_line(look.fit), *flag_lines(look.fit.flags), *_where(look.where), "candidates by unseen error:"]
     for c in look.candidates[:8]:
         marks = [m for m, on in (("in the set", c.in_set), ("decoy", c.decoy)) if on]
         if c.same_as:
@@ -117,5 +118,6 @@ def study_text(study: Study) -> str:
     lines += [
         "parameters of the last model (95 % intervals by stroke):",
         *parameter_lines(study.steps[-1].fit.parameters),
+        *flag_lines(study.steps[-1].fit.flags),
     ]
     return "\n".join(lines)

@@ -94,6 +94,7 @@ def _study(study: Study) -> dict[str, Any]:
         "first": _look(study.first),
         "last": _look(study.last) if len(study.looks) > 1 else None,
         "parameters": _parameters(study),
+        "flags": [f.text for f in fit.flags],
         "provisional": any(s.provisional for s in study.steps),
         "held_out": len(study.held_out) > 0,
         "runs": len(study.runs),
