@@ -146,10 +146,11 @@ def _not_passive(fitted: Fit) -> Iterator[Flag]:
     pace = abs(float(speed[worst]))
     shown = f"{math.degrees(pace):.3g} deg/s" if structure.motion_unit == "rad" else f"{1000.0 * pace:.3g} mm/s"
     way = "increasing" if speed[worst] > 0.0 else "decreasing"
+    size = f"{along[worst]:.3g} {structure.effort_unit}"
     text = (
         f"the friction of the model drives the motion in {_percent(float(wrong.mean()))} of the record, most at "
-        f"{shown} with {way} {structure.motion} ({along[worst]:.3g} {structure.effort_unit}): no friction does that, so these "
-        "values stand for something else."
+        f"{shown} with {way} {structure.motion} ({size}): no friction does that, so these values "
+        "stand for something else."
     )
     yield Flag("not_passive", f"{most}.{card(most, structure.name).linear[0].key}", text)
 

@@ -82,7 +82,8 @@ def diagnosis_text(look: Diagnosis) -> str:
     for c in look.candidates[:8]:
         marks = [m for m, on in (("in the set", c.in_set), ("decoy", c.decoy)) if on]
         if c.same_as:
-            marks.append(f"same as {c.same_as}")
+            inside = c.same_as in look.fit.model.effects
+            marks.append(f"adds nothing to {c.same_as}" if inside else f"same as {c.same_as}")
         lines.append(f"  {c.effect:<20} {number(c.held_out_rms):>10}  gain {100 * c.gain:6.1f} %  {', '.join(marks)}")
     if look.next_experiment:
         lines.append(f"next: {look.next_experiment.text}")

@@ -14,12 +14,13 @@ from ..diagnosis.chance import p_value_floor
 from ..diagnosis.verdict import MANY_STROKES
 from ..diagnosis.words import number
 from ..model import card
+from ..model.negative import in_sense
 from . import checked, sentences
 from .style import rounded
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnose import Diagnosis, Tried
-    from ..diagnosis.study import Study
+    from ..diagnosis.study import Step, Study
     from ..tb038.check import Check
 
 # A verdict is told by a word and a class of colour, never by the colour alone.
@@ -111,7 +112,7 @@ def _steps(study: Study) -> list[dict[str, Any]]:
                 "place": place,
                 "name": "model as given" if step.added is None else card(step.added, structure).title,
                 "effect": step.added,
-                "look": None if step.added is None else card(step.added, structure).look,
+                "look": None if step.added is None else _look_of(step),
                 "others": [card(n, structure).title for n in step.set if n != step.added],
                 "effects": ", ".join(step.fit.model.effects),
                 "unseen": rounded(e.held_out_rms),
@@ -123,6 +124,12 @@ def _steps(study: Study) -> list[dict[str, Any]]:
             }
         )
     return rows
+
+
+def _look_of(step: Step) -> str:
+    name = step.added or ""
+    values = {k.partition(".")[2]: e.value for k, e in step.fit.parameters.items() if k.startswith(f"{name}.")}
+    return in_sense(card(name, step.fit.model.structure_name), values).look
 
 
 def _look(look: Diagnosis) -> dict[str, Any]:
@@ -156,7 +163,7 @@ def _look(look: Diagnosis) -> dict[str, Any]:
 
 def _remark(c: Tried, look: Diagnosis) -> str:
     words = ["decoy"] if c.decoy else []
-    words += [f"came out as {c.same_as}"] if c.same_as else []
+    words += [sentences.came_out(c, look)] if c.same_as else []
     if look.named and c.in_set:
         words += ["best" if c.effect == look.named[0] else "cannot be told from the best"]
     return ", ".join(words)

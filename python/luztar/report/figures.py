@@ -12,6 +12,7 @@ from .curves import loops_before_after as loops_before_after
 from .curves import residual_time as residual_time
 from .maps import where_before_after as where_before_after
 from .maps import where_map as where_map
+from .sentences import came_out
 from .style import AFTER, BEFORE, DECOY, FLOOR, INK, QUIET, dressed, numbers, plain, plotly, rounded
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
         title_text=f"unseen error with the effect added [{fit.noise_floor.unit}]{beyond}",
     )
     structure = fit.model.structure_name
-    labels = [f"{plain(card(c.effect, structure).title)}{_folded(c)} " for c in shown]
+    labels = [f"{plain(card(c.effect, structure).title)}{_folded(c, diagnosis)} " for c in shown]
     picture.update_yaxes(tickvals=list(range(len(shown))), ticktext=labels, range=[len(shown) - 0.4, -0.6])
     return listed(picture, height=150 + 24 * len(shown))
 
@@ -148,8 +149,8 @@ def _offered(c: Tried, diagnosis: Diagnosis) -> bool:
     return c.effect in diagnosis.named
 
 
-def _folded(c: Tried) -> str:
-    return f" (came out as {c.same_as})" if c.same_as else ""
+def _folded(c: Tried, diagnosis: Diagnosis) -> str:
+    return f" ({came_out(c, diagnosis)})" if c.same_as else ""
 
 
 def parameters(fit: Fit) -> Any:
