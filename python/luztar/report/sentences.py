@@ -138,6 +138,7 @@ def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
     if study is None:
         return found
     structure = study.model.structure_name
+    found += _offset_or_direction(study, check)
     names: list[str] = []
     for step in study.steps:
         if step.added is not None and not step.provisional:
@@ -161,6 +162,25 @@ def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
             )
         )
     return found
+
+
+def _offset_or_direction(study: Study, check: Check | None) -> list[tuple[str, str]]:
+    """Say how much of the hysteresis centre is an offset where the study found friction that has a direction."""
+    both = [n for n in study.named if n in ("asymmetric_coulomb", "asymmetric_viscous")]
+    offset = study.steps[-1].fit.parameters.get("offset.level_nm")
+    if check is None or check.offset_nm is None or offset is None or not offset.identifiable or not both:
+        return []
+    friction = titles(both, study.model.structure_name, "and")
+    size = f"{offset.value:+.3f} Nm"
+    if offset.low is not None and offset.high is not None:
+        size += f" ({offset.low:+.3f} to {offset.high:+.3f})"
+    return [
+        (
+            "Offset",
+            f"Of the hysteresis centre of {check.offset_nm:+.3f} Nm the study takes {size} for the sensor's offset and "
+            f"the rest for {friction}: shift the analogue offset by no more than that.",
+        )
+    ]
 
 
 def _to_tell(separates: Sequence[str], structure: str) -> str:
