@@ -83,7 +83,7 @@ def _whose(rules: RuleSet) -> str:
     """Return how to tell a sensor's offset, which may be shifted away, from friction that differs by direction."""
     zero, shift = rules.section("zero_load_cell"), rules.section("shift_offset")
     return (
-        f"Read the load cell with nothing attached ({zero}): what it shows there is an offset, to be shifted away before "
+        f"Read the load cell with nothing attached ({zero}): what it shows is an offset, to be shifted away before "
         f"the readings are taken again ({shift}); the rest is friction that differs between the directions, which no "
         "shift may hide."
     )
