@@ -55,7 +55,20 @@ def require_channels(run: Run, model: Model) -> None:
                 f'Name its column, --map {channel}="COLUMN" (map= in Python), or take the effect out of the model.',
             )
     for channel in (structure.motion, structure.effort):
+        _require_finite(run, channel)
         _require_change(run, channel)
+
+
+def _require_finite(run: Run, channel: str) -> None:
+    lost = [f for f in run.integrity.findings if f.kind == "not_finite" and f.channel == channel]
+    # A file that ends in the middle says so before anything else.
+    if run.integrity.complete and lost and not np.isfinite(run[channel]).all():
+        more = f" (and {len(lost) - 1} more such places)" if len(lost) > 1 else ""
+        raise MeasurementError(
+            f"{lost[0].text}{more}",
+            run.name,
+            "Export the parts before and after as files of their own (Python: run.slice(from_s, to_s)).",
+        )
 
 
 def _require_change(run: Run, channel: str) -> None:

@@ -192,7 +192,9 @@ class Run:
         for finding in self.integrity.findings:
             if finding.kind in ("gap", "duplicate_time", "reversed_time"):
                 raise MeasurementError(
-                    f"the time axis is broken: {finding.text}", self.name, "Take the parts: run.split_at_gaps()."
+                    f"the time axis is broken: {finding.text}",
+                    self.name,
+                    "Export the parts before and after as files of their own (Python: run.split_at_gaps()).",
                 )
         for finding in self.integrity.findings:
             if finding.kind == "uneven":
@@ -201,7 +203,7 @@ class Run:
                 raise MeasurementError(
                     f"the sampling is uneven: {finding.text}",
                     self.name,
-                    f"Resample: run.resample({rate}), or read(..., resample_hz={rate}).",
+                    f"Bring it to an even rate: --resample {rate} (Python: run.resample({rate})).",
                 )
         return self
 
