@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import MeasurementError
 from ..model import Model, card
 from ..model.structure import Structure
-from .prepare import Prepared, prepare
+from .prepare import Prepared, prepare_run
 
 if TYPE_CHECKING:
     from ..measurement import Run
@@ -30,12 +30,14 @@ def prepare_measured(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:
         As there; or what an effect of the model looks at was not recorded, a channel stands still, or the friction is
         negative in both directions.
     """
-    for run in runs:
+    if not runs:
+        raise MeasurementError("there are no runs", "runs", "Give at least one run file.")
+    made = []
+    for number, run in enumerate(runs):
         require_channels(run, model)
-    made = prepare(runs, model)
-    for r in made:
-        require_friction_sign(r, model)
-    return made
+        made.append(prepare_run(number, run, model))
+        require_friction_sign(made[-1], model)
+    return tuple(made)
 
 
 def require_channels(run: Run, model: Model) -> None:

@@ -101,10 +101,11 @@ def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:
     """
     if not len(runs):
         raise MeasurementError("there are no runs", "runs", "Give at least one run file.")
-    return tuple(_prepare(number, run, model) for number, run in enumerate(runs))
+    return tuple(prepare_run(number, run, model) for number, run in enumerate(runs))
 
 
-def _prepare(number: int, run: Run, model: Model) -> Prepared:
+def prepare_run(number: int, run: Run, model: Model) -> Prepared:
+    """Make one run ready; its strokes carry the number."""
     structure = model.structure
     if not run.integrity.complete:
         why = next((f.text for f in run.integrity.findings if f.kind == "cut"), "the file ends in the middle")
