@@ -286,7 +286,7 @@ def plan(
 
 @app.command()
 def explain(
-    effect: Annotated[str | None, typer.Argument(metavar="[EFFECT]", help="An effect's name.")] = None,
+    effect: Annotated[str | None, typer.Argument(metavar="EFFECT", help="An effect's name.")] = None,
     json: Json = False,
     debug: Debug = False,
 ) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..model import card
+from ..model.negative import in_sense
 from .flags import flag_lines
 
 if TYPE_CHECKING:
@@ -109,6 +110,19 @@ def ladder_lines(study: Study) -> list[str]:
     return lines
 
 
+def _turned(study: Study) -> list[str]:
+    """Return a line for every effect that was added and does the opposite of what its name says."""
+    last = study.steps[-1].fit
+    lines = []
+    for name in (s.added for s in study.steps if s.added):
+        described = card(name, last.model.structure_name)
+        values = {k.partition(".")[2]: e.value for k, e in last.parameters.items() if k.startswith(f"{name}.")}
+        found = in_sense(described, values)
+        if found != described:
+            lines.append(f"note: {name} is negative. {found.look}")
+    return lines
+
+
 def study_text(study: Study) -> str:
     """Return a study as text."""
     lines = ["unseen error, step by step:", *ladder_lines(study)]
@@ -116,6 +130,7 @@ def study_text(study: Study) -> str:
     for s in study.steps:
         if s.next_experiment and len(s.set) > 1:
             lines.append(f"next: {s.next_experiment.text}")
+    lines += _turned(study)
     lines += [
         "parameters of the last model (95 % intervals by stroke):",
         *parameter_lines(study.steps[-1].fit.parameters),

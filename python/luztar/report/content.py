@@ -80,6 +80,7 @@ def _study(study: Study) -> dict[str, Any]:
         "meaning": sentences.VERDICT_MEANING[study.verdict],
         "why": study.last.judgement.why,
         "error": sentences.error_sentence(study),
+        "motion": fit.model.structure.motion,
         "effort": fit.model.structure.effort,
         "unit": fit.noise_floor.unit,
         "floor": {
@@ -114,7 +115,7 @@ def _steps(study: Study) -> list[dict[str, Any]]:
                 "effect": step.added,
                 "look": None if step.added is None else _look_of(step),
                 "others": [card(n, structure).title for n in step.set if n != step.added],
-                "effects": ", ".join(step.fit.model.effects),
+                "effects": ", ".join(step.fit.model.effects) or "no effects",
                 "unseen": rounded(e.held_out_rms),
                 "unseen_percent": f"{100 * e.held_out_relative:.1f}",
                 "seen": rounded(e.rms),
@@ -135,7 +136,7 @@ def _look_of(step: Step) -> str:
 def _look(look: Diagnosis) -> dict[str, Any]:
     structure = look.fit.model.structure_name
     return {
-        "effects": ", ".join(look.fit.model.effects),
+        "effects": ", ".join(look.fit.model.effects) or "no effects",
         "verdict": look.verdict,
         "why": look.judgement.why,
         "strokes": look.detection.strokes,
@@ -227,7 +228,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
         model = study.model
         rows += [
             ("Structure", f"{model.structure_name}: {model.structure.motion} in, {model.structure.effort} out"),
-            ("Model as given", ", ".join(study.steps[0].fit.model.effects)),
+            ("Model as given", ", ".join(study.steps[0].fit.model.effects) or "no effects"),
             ("Model after the last step", ", ".join(model.effects)),
             ("Given, not estimated", ", ".join(f"{k} = {number(v)}" for k, v in model.known.items()) or "nothing"),
             ("Band of the comparison", f"0 to {model.band_hz:g} Hz"),
