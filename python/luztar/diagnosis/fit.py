@@ -187,7 +187,7 @@ def _search_grid(problem: Problem, search: Search, name: str) -> None:
         return
     assert search.best is not None
     for values in inner_grid(name, model, problem.runs):
-        search.visit(state(problem, search.best.terms.having(name, values), search.best, name))
+        search.visit(state(problem, search.best.terms.having(name, values)))
 
 
 def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor: NoiseFloor) -> Fit:

@@ -16,7 +16,14 @@ FEWEST_SAMPLES = 50
 
 
 def require_resolved(
-    run: str, model: Model, band_hz: float, rate_hz: float, duration_s: float, kept: int, strokes: int
+    run: str,
+    model: Model,
+    band_hz: float,
+    rate_hz: float,
+    duration_s: float,
+    kept: int,
+    strokes: int,
+    usually: Callable[[], int],
 ) -> None:
     """Refuse a band so low that its filter mixes neighbouring strokes, or a decimation that leaves too few samples.
 
@@ -30,6 +37,9 @@ def require_resolved(
     kept : int
         Samples kept after the decimation.
     strokes : int
+        As found after the smoothing that goes with the band.
+    usually : callable
+        Returns the strokes that the structure's own band shows.
 
     Raises
     ------
@@ -42,7 +52,12 @@ def require_resolved(
             run,
             f"Set comparison.decimate to at most {max(1, math.ceil(0.5 * rate_hz / band_hz) - 1)}, or leave it out.",
         )
-    # With its dwell, and over the whole record: the turns themselves are smeared by the filter that is judged here.
+    if band_hz < model.structure.band_hz:
+        # The smoothing of a low band makes one stroke of many, or none.
+        strokes = max(strokes, usually())
+    if not strokes:
+        return
+    # With its dwell: over the whole record.
     stroke_s = duration_s / strokes
     memory_s = FILTER_MEMORY_PERIODS / band_hz
     if memory_s > stroke_s:

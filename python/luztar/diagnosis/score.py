@@ -10,7 +10,6 @@ right ones: naming is by held-out error after refitting (see ``candidates``).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -19,6 +18,7 @@ import numpy as np
 from .chance import one_sided, p_values, signs, studentised, studentised_pairs
 from .equations import Weights
 from .floor import hats, travel_since_reversal
+from .lines import line_frequencies_hz, line_scores
 from .prepare import Prepared
 
 # Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
@@ -27,10 +27,8 @@ SPEED_CELLS = 5
 TIME_CELLS = 8
 TRAVEL_CELLS = (0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5)
 PRODUCT_CELLS = 8
-# Spectral lines are looked for from slower than a stroke's own changes up to the band's upper edge, in steps of half a
-# line's width; so many at a time, that the columns stay small.
-SLOWEST_LINE_HZ = 0.3
-LINES_AT_A_TIME = 40
+# What gives the uncertain start of each stroke the weight it has in the fit.
+Whitener = Callable[[np.ndarray], np.ndarray]
 # Kinds of what repeats.
 LACK = ("state", "time", "reversal", "spectrum")
 
@@ -104,22 +102,6 @@ def cells(runs: Sequence[Prepared]) -> list[Feature]:
     return [Feature("state", tuple(state)), Feature("time", tuple(time)), Feature("reversal", tuple(travel))]
 
 
-def lines(runs: Sequence[Prepared], band_hz: float) -> list[Feature]:
-    """Return sines and cosines of time, as pairs of neighbouring columns, for the search for spectral lines."""
-    longest = max(r.duration_s for r in runs)
-    frequencies = np.arange(SLOWEST_LINE_HZ, band_hz, 0.5 / longest)
-    found = []
-    for part in np.array_split(frequencies, max(1, math.ceil(frequencies.size / LINES_AT_A_TIME))):
-        if not part.size:
-            continue
-        columns = []
-        for r in runs:
-            angle = 2.0 * np.pi * np.outer(r.time_s, part)
-            columns.append(np.stack([np.sin(angle), np.cos(angle)], axis=2).reshape(r.time_s.size, -1))
-        found.append(Feature("spectrum", tuple(columns)))
-    return found
-
-
 def detect(
     runs: Sequence[Prepared],
     model_columns: Sequence[np.ndarray],
@@ -147,8 +129,9 @@ def detect(
         as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
     strokes = [(r, s) for r in runs for s in r.strokes]
-    features = [*candidates, *cells(runs), *lines(runs, weights.band_hz)]
+    features = [*candidates, *cells(runs)]
     scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
+    features.append(Feature("spectrum", ()))
     live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
     flips = signs(len(strokes))
     names = [f.name for f in features]
@@ -198,7 +181,7 @@ def _scores(
     start_shift: float,
     start_bound: float,
 ) -> list[np.ndarray]:
-    """Return the scores of every feature, each of shape (strokes, q)."""
+    """Return the scores of every feature, each of shape (strokes, q), then those of the spectral lines."""
     out: list[np.ndarray] = [np.empty(0)] * len(features)
     for inside in (False, True):
         chosen = [i for i, f in enumerate(features) if f.inside_zones == inside]
@@ -229,12 +212,40 @@ def _scores(
             # A column that the model explains already has nothing left but rounding.
             scores[:, np.linalg.norm(z, axis=0) < 1e-9 * np.sqrt(len(z))] = 0.0
             out[i] = scores
+        if not inside:
+            frequencies = line_frequencies_hz(max(r.duration_s for r in runs), weights.band_hz)
+            out.append(_line_scores(runs, keep, whiten, owners, belongs, q, residual, frequencies))
     return out
 
 
-def _whitener(
-    r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, weights: Weights
-) -> Callable[[np.ndarray], np.ndarray]:
+def _line_scores(
+    runs: Sequence[Prepared],
+    keep: Sequence[np.ndarray],
+    whiten: Sequence[Whitener],
+    owners: Sequence[np.ndarray],
+    belongs: np.ndarray,
+    q: np.ndarray,
+    residual: np.ndarray,
+    frequencies_hz: np.ndarray,
+) -> np.ndarray:
+    """Return the scores of the spectral lines, shape (strokes, 2 lines).
+
+    The whitener is symmetric and stays inside a stroke: what it does to a line it may as well do to what the line is
+    multiplied with.
+    """
+    parts, start = [], 0
+    for r, k, w, owner in zip(runs, keep, whiten, owners, strict=True):
+        rows = slice(start, start + int(k.sum()))
+        start = rows.stop
+        at_all = np.full(k.size, -1)
+        at_all[k] = owner
+        table = np.zeros((k.size, q.shape[1] + 1))
+        table[k] = w(np.column_stack([q[rows], residual[rows]]))
+        parts.append((at_all, table[:, -1], table[:, :-1], r.step_s))
+    return line_scores(parts, belongs @ (q * residual[:, None]), frequencies_hz)
+
+
+def _whitener(r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, weights: Weights) -> Whitener:
     """Return the map that gives the uncertain start of each stroke the weight it has in the fit.
 
     The square root of ``I - z z' / (z'z + ridge)`` for each stroke's column ``z``.

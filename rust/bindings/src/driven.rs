@@ -1,7 +1,10 @@
 //! `luztar._core.Recording`: a run prepared for driven fits.
 
-use luztar::driven::{Band, Recording as Core, Term, Travel};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use luztar::driven::{Band, Blocks, Recording as Core, Rows, Term, Travel, solve};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -149,14 +152,6 @@ impl Recording {
         Ok(kept.into_pyarray(py))
     }
 
-    fn state<'py>(&self, py: Python<'py>, model: Terms) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let model = terms(model);
-        Ok(py
-            .detach(|| self.core.state(&model))
-            .map_err(CoreError)?
-            .into_pyarray(py))
-    }
-
     fn start_shift<'py>(
         &self,
         py: Python<'py>,
@@ -185,4 +180,75 @@ impl Recording {
         let shape = [columns.len(), columns.first().map_or_else(kept, Vec::len)];
         columns.concat().into_pyarray(py).reshape(shape)
     }
+
+    /// Shape (strokes, size, size). `strokes`: (first, last, ridge) in kept samples.
+    fn normal_equations<'py>(
+        &self,
+        py: Python<'py>,
+        model: Terms,
+        given: Vec<(usize, f64)>,
+        effort: PyReadonlyArray1<'_, f64>,
+        strokes: Vec<(usize, usize, f64)>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (model, rows) = (terms(model), rows(strokes));
+        let y = effort.as_slice()?;
+        let made = py
+            .detach(|| self.core.normal_equations(&model, &given, y, &rows))
+            .map_err(CoreError)?;
+        array(py, made)
+    }
+}
+
+fn rows(strokes: Vec<(usize, usize, f64)>) -> Vec<Rows> {
+    strokes
+        .into_iter()
+        .map(|(first, last, ridge)| Rows { first, last, ridge })
+        .collect()
+}
+
+fn array(py: Python<'_>, blocks: Blocks) -> PyResult<Bound<'_, PyArray3<f64>>> {
+    let shape = [blocks.len(), blocks.size, blocks.size];
+    blocks.products.into_pyarray(py).reshape(shape)
+}
+
+fn blocks(products: &PyReadonlyArray3<'_, f64>) -> PyResult<Blocks> {
+    Ok(Blocks {
+        size: products.shape()[1],
+        products: products.as_slice()?.to_vec(),
+    })
+}
+
+/// The blocks of columns that are at hand; `columns` has the shape (size, kept samples).
+#[pyfunction]
+pub fn normal_equations<'py>(
+    py: Python<'py>,
+    columns: PyReadonlyArray2<'_, f64>,
+    strokes: Vec<(usize, usize, f64)>,
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let length = columns.shape()[1].max(1);
+    let all: Vec<&[f64]> = columns.as_slice()?.chunks(length).collect();
+    array(py, Blocks::of(&all, &rows(strokes)))
+}
+
+/// The least-squares coefficients of one summed block, shape (size, size).
+#[pyfunction]
+pub fn solve_block<'py>(
+    py: Python<'py>,
+    block: PyReadonlyArray2<'_, f64>,
+    bound: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    Ok(solve(block.as_slice()?, block.shape()[0], bound).into_pyarray(py))
+}
+
+/// [losses per stroke, training loss per fold].
+#[pyfunction]
+pub fn held_out<'py>(
+    py: Python<'py>,
+    products: PyReadonlyArray3<'_, f64>,
+    fold_of: Vec<usize>,
+    folds: usize,
+    bound: f64,
+) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+    let (losses, training) = blocks(&products)?.held_out(&fold_of, folds, bound);
+    Ok([losses, training].map(|v| v.into_pyarray(py)))
 }

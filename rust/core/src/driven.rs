@@ -4,12 +4,15 @@
 mod cache;
 mod columns;
 mod contact;
+mod equations;
 mod kinematics;
 mod recording;
 mod resolution;
+mod rests;
 mod staircase;
 mod strokes;
 
 pub use columns::{Term, inner_of};
+pub use equations::{Blocks, Rows, solve};
 pub use recording::{Band, Recording, Travel};
 pub use strokes::Stroke;
