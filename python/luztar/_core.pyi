@@ -13,6 +13,9 @@ __all__ = [
     "__version__",
     "effect_cards",
     "fit_line",
+    "held_out",
+    "normal_equations",
+    "solve_block",
     "zero_phase",
 ]
 

@@ -13,6 +13,8 @@ from ..model import Parameter, card
 from .grids import is_continuous, is_sharpness, limits
 from .jacobian import continuous, jacobian
 from .misfit import rms, usable
+from .prepare import Prepared
+from .resolved import FILTER_MEMORY_PERIODS
 
 if TYPE_CHECKING:
     from .fit import Fit
@@ -133,8 +135,7 @@ def _not_passive(fitted: Fit) -> Iterator[Flag]:
     rubbing = [n for n in fitted.model.effects if card(n, structure.name).behind_gap]
     if not rubbing:
         return
-    # At a reversal the low pass mixes both directions: only what lies clear of it counts.
-    clear = [r.usable & ~r.zone for r in fitted.runs]
+    clear = [r.usable & ~_near_reversal(r, fitted.model.band_hz) for r in fitted.runs]
     parts = {n: np.concatenate([p[k] for p, k in zip(_contribution(fitted, n), clear, strict=True)]) for n in rubbing}
     speed = np.concatenate([r.speed[k] for r, k in zip(fitted.runs, clear, strict=True)])
     along = sum(parts.values()) * np.sign(speed)
@@ -153,6 +154,17 @@ def _not_passive(fitted: Fit) -> Iterator[Flag]:
         "stand for something else."
     )
     yield Flag("not_passive", f"{most}.{card(most, structure.name).linear[0].key}", text)
+
+
+def _near_reversal(r: Prepared, band_hz: float) -> np.ndarray:
+    """Return where the low pass mixes both directions: as far as it remembers beyond the stretches of low speed."""
+    reach = math.ceil(FILTER_MEMORY_PERIODS / band_hz / r.step_s)
+    # A reversal between two kept samples has no stretch of low speed, but an onset.
+    edges = [*np.flatnonzero(np.diff(r.zone.astype(np.int8))), *(s.onset for s in r.strokes)]
+    near = r.zone.copy()
+    for edge in edges:
+        near[max(0, edge - reach) : edge + reach] = True
+    return near
 
 
 def _percent(share: float) -> str:
