@@ -35,6 +35,7 @@ PUBLIC: dict[str, tuple[str, list[str]]] = {
     "tight_spot": ("friction_level", ["extra_nm", "angle_rad", "width_rad"]),
     "load": ("friction_level", ["coefficient"]),
     "delay": ("sensor", ["time_s"]),
+    "lead": ("sensor", ["time_s"]),
     "warmup": ("friction_level", ["extra_nm", "time_s"]),
     "drift": ("sensor", ["rate_nm_per_s"]),
     "dwell": ("friction_level", ["extra_nm", "time_s"]),

@@ -202,7 +202,7 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
         held = tuple(predict(r, m, best.coefficients) for r, m in zip(unseen, there.made.matrix, strict=True))
         held_runs = unseen
     else:
-        held, held_runs = folded(problem, search), runs
+        held, held_runs = predict_folds(problem, search), runs
     error = misfit(
         runs,
         [r.effort - p for r, p in zip(runs, predicted, strict=True)],
@@ -233,7 +233,7 @@ def predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.nda
     return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
-def folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
+def predict_folds(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
     """Predict every stroke with coefficients that have not seen its fold."""
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]

@@ -30,7 +30,10 @@ PRODUCT_CELLS = 8
 # What gives the uncertain start of each stroke the weight it has in the fit.
 Whitener = Callable[[np.ndarray], np.ndarray]
 # Kinds of what repeats.
-LACK = ("state", "time", "reversal", "spectrum")
+CELLS = ("state", "time", "reversal")
+LACK = (*CELLS, "spectrum")
+# Kinds of candidates' tests: outside the reversal zones, and inside for what only shows there.
+CANDIDATES = ("candidates", "candidates in zones")
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,8 @@ class Detection:
     along : str
         Where it repeats most: a kind of :data:`LACK`.
     strokes : int
+    kinds : dict of str to (float, str)
+        P-value of each kind of test by itself, and what is strongest in it.
     """
 
     p_value: float
@@ -74,6 +79,7 @@ class Detection:
     lack_of_fit: float
     along: str
     strokes: int
+    kinds: dict[str, tuple[float, str]]
 
 
 def cells(runs: Sequence[Prepared]) -> list[Feature]:
@@ -128,49 +134,58 @@ def detect(
         By how much each candidate lowers the held-out loss of every stroke. If nothing is missing a gain is as likely
         as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
-    strokes = [(r, s) for r in runs for s in r.strokes]
+    count = sum(len(r.strokes) for r in runs)
+    flips = signs(count)
     features = [*candidates, *cells(runs)]
     scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
-    features.append(Feature("spectrum", ()))
-    live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
-    flips = signs(len(strokes))
-    names = [f.name for f in features]
-    drawn = {}
-    for name in dict.fromkeys(names):
-        of = studentised_pairs if name == "spectrum" else studentised
-        parts = [of(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
-        if not parts:
-            continue
-        # A candidate is as strong as its best column, so is a line; cells add up, for a pattern is spread over them.
-        joined = np.hstack(parts)
-        drawn[name] = joined.sum(axis=1) if name in ("state", "time", "reversal") else joined.max(axis=1)
-    if not drawn:
-        return Detection(1.0, {}, 1.0, "state", len(strokes))
-    keys = list(drawn)
-    single = p_values(np.column_stack([drawn[k] for k in keys]))
-    family = np.array([k in LACK for k in keys])
-    # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
-    groups = [np.flatnonzero(~family)] + [np.array([i]) for i in np.flatnonzero(family)]
-    if gains is not None and gains.size:
-        keys.append("gain")
-        single = np.column_stack([single, p_values(one_sided(gains, flips).max(axis=1)[:, None])])
-        family = np.append(family, False)
-        groups = [np.flatnonzero(~family[:-1]), *groups[1:], np.array([len(keys) - 1])]
-    grouped = p_values(-np.column_stack([single[:, g].min(axis=1) for g in groups if g.size]))
-    overall = p_values(-grouped.min(axis=1)[:, None])[:, 0]
-    candidate = np.array([not f and k != "gain" for k, f in zip(keys, family, strict=True)])
-    adjusted = {
-        k: float(np.mean(single[:, candidate].min(axis=1) <= single[0, i] + 1e-12))
-        for i, k in enumerate(keys)
-        if candidate[i]
+    drawn: dict[tuple[str, str], list[np.ndarray]] = {}
+    for feature, score in zip([*features, Feature("spectrum", ())], scores, strict=True):
+        if np.count_nonzero(np.any(score != 0.0, axis=1)) > 1:
+            of = studentised_pairs if feature.name == "spectrum" else studentised
+            drawn.setdefault((_kind(feature), feature.name), []).append(of(score, flips))
+    # A candidate is as strong as its best column, so is a line; cells add up, for a pattern is spread over them.
+    joined = {
+        key: np.hstack(parts).sum(axis=1) if key[0] in CELLS else np.hstack(parts).max(axis=1)
+        for key, parts in drawn.items()
     }
-    lack_keys = [k for k in keys if k in LACK]
-    lack_single = single[:, family]
-    if not lack_keys:
-        return Detection(float(overall[0]), adjusted, 1.0, "state", len(strokes))
-    lack_of_fit = float(p_values(-lack_single.min(axis=1)[:, None])[0, 0])
-    along = lack_keys[int(np.argmin(lack_single[0]))]
-    return Detection(float(overall[0]), adjusted, lack_of_fit, along, len(strokes))
+    if gains is not None and gains.size:
+        joined[("gain", "gain")] = one_sided(gains, flips).max(axis=1)
+    if not joined:
+        return Detection(1.0, {}, 1.0, "state", count, {})
+    keys = list(joined)
+    single = p_values(np.column_stack([joined[k] for k in keys]))
+    kinds = list(dict.fromkeys(kind for kind, _ in keys))
+    least = {kind: single[:, [i for i, k in enumerate(keys) if k[0] == kind]].min(axis=1) for kind in kinds}
+    # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
+    grouped = p_values(-np.column_stack([least[kind] for kind in kinds]))
+    overall = float(_smallest(grouped)[0])
+    of_candidates = [i for i, (kind, _) in enumerate(keys) if kind in CANDIDATES]
+    adjusted: dict[str, float] = {}
+    for i in of_candidates:
+        p = float(np.mean(single[:, of_candidates].min(axis=1) <= single[0, i] + 1e-12))
+        adjusted[keys[i][1]] = min(p, adjusted.get(keys[i][1], 1.0))
+    lack = [kinds.index(kind) for kind in LACK if kind in kinds]
+    by_kind = {kind: (float(p), _strongest(keys, single, kind)) for kind, p in zip(kinds, grouped[0], strict=True)}
+    if not lack:
+        return Detection(overall, adjusted, 1.0, "state", count, by_kind)
+    along = kinds[lack[int(np.argmin(grouped[0, lack]))]]
+    return Detection(overall, adjusted, float(_smallest(grouped[:, lack])[0]), along, count, by_kind)
+
+
+def _kind(feature: Feature) -> str:
+    if feature.name in LACK:
+        return feature.name
+    return "candidates in zones" if feature.inside_zones else "candidates"
+
+
+def _smallest(p: np.ndarray) -> np.ndarray:
+    """Return the p-value of the smallest of several, per draw."""
+    return p_values(-p.min(axis=1)[:, None])[:, 0]
+
+
+def _strongest(keys: Sequence[tuple[str, str]], single: np.ndarray, kind: str) -> str:
+    places = [i for i, k in enumerate(keys) if k[0] == kind]
+    return keys[places[int(np.argmin(single[0, places]))]][1]
 
 
 def _scores(
@@ -188,12 +203,14 @@ def _scores(
         if not chosen:
             continue
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
-        tables = [m[k] for m, k in zip(model_columns, keep, strict=True)]
-        owners = [_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)]
-        whiten = [
-            _whitener(r, t[:, -2], o, n, weights)
-            for r, t, o, (_, n) in zip(runs, tables, owners, _offsets(runs), strict=True)
+        offsets = _offsets(runs)
+        every = [_owner(r, offset) for r, offset in offsets]
+        tables = [
+            np.column_stack([_own_starts(r, m, o, n)[k], m[k]])
+            for (r, n), m, o, k in zip(offsets, model_columns, every, keep, strict=True)
         ]
+        owners = [o[k] for o, k in zip(every, keep, strict=True)]
+        whiten = [_whitener(r, t[:, -2], o, n, weights) for (r, n), t, o in zip(offsets, tables, owners, strict=True)]
         table = np.concatenate([w(t) for w, t in zip(whiten, tables, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
         # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor
@@ -266,6 +283,16 @@ def _whitener(r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, we
         return out
 
     return apply
+
+
+def _own_starts(r: Prepared, columns: np.ndarray, owner: np.ndarray, offset: int) -> np.ndarray:
+    """Return what starts that are all late by the same share of their own uncertainty would add.
+
+    How a motion begins before the sensor shows it is extrapolated; a wrong extrapolation is one that is wrong by a
+    share of what it extrapolates over.
+    """
+    uncertainty = np.array([0.0, *(s.onset_uncertainty_s for s in r.strokes)])
+    return columns[:, -2] * uncertainty[np.where(owner >= 0, owner - offset + 1, 0)]
 
 
 def _scaled(basis: np.ndarray) -> np.ndarray:

@@ -90,9 +90,8 @@ def admissible(fitted: Fit, c: Candidate) -> bool:
     return all(p.low <= values[p.key] <= p.high for p in c.card.parameters if p.role == "linear")
 
 
-def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judgement:
-    """Decide what a look at the candidates allows to say."""
-    simpler = folded(fitted, found)
+def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler: dict[str, str]) -> Judgement:
+    """Decide what a look at the candidates allows to say; ``simpler`` are the :func:`folded` ones."""
     rivals = [c for c in found if c.name not in simpler and admissible(fitted, c)]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:

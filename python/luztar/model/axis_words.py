@@ -85,6 +85,12 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "cause": "Side load on guides and bearings.",
         "check": "Repeat with a known weight on the carriage; let the load act along the axis.",
     },
+    "lead": {
+        "title": "force ahead of the position",
+        "look": "Every reversal of the force comes before that of the position, by the same time.",
+        "cause": "A filter or a tracking loop in the position channel only, channels sampled one after the other, a "
+        "command recorded in place of the force.",
+    },
     "warmup": {"check": "Drive a few strokes before the record."},
     "drift": {
         "cause": "Force sensor or amplifier warming up.",

@@ -10,6 +10,7 @@ mod recording;
 mod resolution;
 mod rests;
 mod staircase;
+mod start;
 mod strokes;
 
 pub use columns::{Term, inner_of};

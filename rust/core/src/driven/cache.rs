@@ -7,7 +7,7 @@ use crate::effects::Contact;
 
 /// So many bytes are kept, but at least and at most so many entries: a model has five to ten columns of which a search
 /// varies one or two at a time; the grids of all candidates together have some 250 points.
-const BYTES: usize = 32 << 20;
+const BYTES: usize = 16 << 20;
 const FEWEST: usize = 48;
 const MOST: usize = 256;
 
