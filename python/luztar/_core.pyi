@@ -13,6 +13,9 @@ __all__ = [
     "__version__",
     "effect_cards",
     "fit_line",
+    "held_out",
+    "normal_equations",
+    "solve_block",
     "zero_phase",
 ]
 
@@ -152,6 +155,7 @@ class Recording:
         turn_rad_per_unit: float,
         load_n: NDArray[np.float64] | None,
     ) -> Recording: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[NDArray[np.float64]], dict[str, object]]: ...
     def __len__(self) -> int: ...
     @property
     def resolution(self) -> float: ...

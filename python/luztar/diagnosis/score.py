@@ -210,10 +210,7 @@ def _scores(
             for (r, n), m, o, k in zip(offsets, model_columns, every, keep, strict=True)
         ]
         owners = [o[k] for o, k in zip(every, keep, strict=True)]
-        whiten = [
-            _whitener(r, t[:, -2], o, n, weights)
-            for (r, n), t, o in zip(offsets, tables, owners, strict=True)
-        ]
+        whiten = [_whitener(r, t[:, -2], o, n, weights) for (r, n), t, o in zip(offsets, tables, owners, strict=True)]
         table = np.concatenate([w(t) for w, t in zip(whiten, tables, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
         # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor

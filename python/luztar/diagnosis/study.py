@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from ..errors import ParameterError
 from ..model import Model, card
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, gain, paired_error
 from .diagnose import Diagnosis, diagnose
 from .experiment import Experiment, experiment_for
 from .fit import Fit, fit_prepared, not_held_out
 from .floor import NoiseFloor, noise_floor
-from .prepare import Prepared, prepare
+from .given import given_model, given_runs
+from .plausible import prepare_measured
+from .prepare import Prepared
 
 if TYPE_CHECKING:
     import os
@@ -42,7 +45,7 @@ class Step:
     added: str | None
     set: tuple[str, ...]
     provisional: bool
-    fit: Fit
+    fit: Fit = field(repr=False)
     next_experiment: Experiment | None
 
     def to_dict(self) -> dict[str, Any]:
@@ -121,6 +124,8 @@ class Study:
 
         return study_text(self)
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -141,8 +146,8 @@ class Study:
 
 def study(
     model: Model,
-    runs: Sequence[Run],
-    held_out: Sequence[Run] = (),
+    runs: Run | Sequence[Run],
+    held_out: Run | Sequence[Run] = (),
     *,
     max_effects: int = MAX_EFFECTS,
     progress: Callable[[str, int, int], None] | None = None,
@@ -153,16 +158,24 @@ def study(
     ----------
     model : Model
         Where to start.
-    runs : sequence of Run
-    held_out : sequence of Run
+    runs : Run or sequence of Run
+    held_out : Run or sequence of Run
         Only predicted: never influences a coefficient, an inner parameter, a name, an order or the stop.
     max_effects : int
         Add at most this many.
     progress : callable, optional
         Called with (what is being done, done, total).
+
+    Raises
+    ------
+    MeasurementError, ModelError, ParameterError
+        As :func:`luztar.fit`; or a negative number of effects.
     """
-    prepared = prepare(not_held_out(runs, held_out), model)
-    unseen = prepare(held_out, model) if len(held_out) else ()
+    if not isinstance(max_effects, int) or isinstance(max_effects, bool) or max_effects < 0:
+        raise ParameterError(f"max_effects is {max_effects!r}", "max_effects", "Give a whole number from 0.")
+    model, runs, held_out = given_model(model), given_runs("runs", runs), given_runs("held_out", held_out)
+    prepared = prepare_measured(not_held_out(runs, held_out), model)
+    unseen = prepare_measured(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
     steps, looks = climb(_Loop(model, prepared, unseen, floor, progress), max_effects)
     return Study(tuple(steps), tuple(looks), floor, runs, held_out)
@@ -179,7 +192,8 @@ class _Loop:
     progress: Callable[[str, int, int], None] | None
 
     def fit(self, model: Model) -> Fit:
-        return fit_prepared(model, self.prepared, self.unseen, self.floor)
+        # Later models start from what the first ones have found.
+        return fit_prepared(model, self.prepared, self.unseen, self.floor, located=model is not self.base)
 
     def look(self, fitted: Fit, what: str) -> Diagnosis:
         progress = self.progress
@@ -228,7 +242,7 @@ def _without_needless(loop: _Loop, fitted: Fit, added: list[str]) -> tuple[Fit, 
     An effect may have stood in for others that were added later; what is left must each earn its place.
     """
     while len(added) > 1:
-        trials = [(name, loop.fit(fitted.model - name)) for name in added]
+        trials = [(name, loop.fit(fitted.model - name)) for name in added if not _needed(fitted.model, name)]
         for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
             share, errors = gain(without.search, fitted.search)
             if share < PRACTICAL_GAIN or errors < SET_ERRORS:
@@ -250,7 +264,7 @@ def _simplest(
     improved = len(added) > 1
     while improved:
         improved = False
-        for name in added:
+        for name in (n for n in added if not _needed(fitted.model, n)):
             for other in offered.get(name, ()):
                 if other == name or other in fitted.model.effects:
                     continue
@@ -273,6 +287,9 @@ def _each_in_its_place(
     """Look again for every effect with the others in place: a better one replaces it, equal ones join its set."""
     offered: dict[str, tuple[str, ...]] = {}
     for name in list(added):
+        if _needed(fitted.model, name):
+            offered[name] = (name,)
+            continue
         without = loop.fit(fitted.model - name)
         look = loop.look(without, f"in the place of {name}")
         if look.named and look.named[0] != name and name not in look.named:
@@ -295,7 +312,9 @@ def _ladder(
     left = list(added)
     while left:
         model = steps[-1].fit.model
-        trials = {name: loop.fit(_started(model + name, start, fitted)) for name in left} if len(left) > 1 else {}
+        # What stands on an effect that is still to be added waits for it.
+        ready = [n for n in left if card(n, model.structure_name).needs not in left]
+        trials = {name: loop.fit(_started(model + name, start, fitted)) for name in ready} if len(left) > 1 else {}
         name = min(trials, key=lambda n: trials[n].search.held_out_loss) if trials else left[0]
         step_fit = trials.get(name) or fitted
         members = offered.get(name, (name,))
@@ -305,6 +324,11 @@ def _ladder(
         steps.append(Step(name, members, provisional, step_fit, experiment_for(step_fit, members)))
         left.remove(name)
     return steps
+
+
+def _needed(model: Model, name: str) -> bool:
+    """Whether another effect of the model makes no sense without this one."""
+    return any(card(e, model.structure_name).needs == name for e in model.effects)
 
 
 def _started(model: Model, start: dict[str, float], fitted: Fit) -> Model:
@@ -325,4 +349,5 @@ def _inner_values(model: Model, inner: Mapping[str, tuple[float, ...]]) -> dict[
         f"{name}.{p.key}": value
         for name, values in inner.items()
         for p, value in zip(card(name, model.structure_name).inner, values, strict=True)
+        if f"{name}.{p.key}" not in model.known
     }

@@ -6,6 +6,7 @@ use numpy::{
     PyReadonlyArray3, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::error::CoreError;
 
@@ -21,7 +22,20 @@ fn terms(given: Terms) -> Vec<Term> {
 
 /// A run prepared for driven fits; immutable, so that threads may share it.
 #[pyclass(frozen, module = "luztar._core")]
-pub struct Recording(Core);
+pub struct Recording {
+    core: Core,
+    /// What it was made from, so that it can be made again in another process.
+    made_from: MadeFrom,
+}
+
+/// The arrays are the caller's own: a reference costs nothing.
+struct MadeFrom {
+    position: Py<PyArray1<f64>>,
+    load_n: Option<Py<PyArray1<f64>>>,
+    sample_rate_hz: f64,
+    band: Band,
+    travel: Travel,
+}
 
 #[pymethods]
 impl Recording {
@@ -60,41 +74,68 @@ impl Recording {
         let core = py
             .detach(|| Core::new(x, sample_rate_hz, band, travel, load))
             .map_err(CoreError)?;
-        Ok(Self(core))
+        let made_from = MadeFrom {
+            position: (*position).clone().unbind(),
+            load_n: load_n.map(|load| (*load).clone().unbind()),
+            sample_rate_hz,
+            band,
+            travel,
+        };
+        Ok(Self { core, made_from })
+    }
+
+    /// For pickle.
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let made = &self.made_from;
+        let (band, travel) = (made.band, made.travel);
+        let options = PyDict::new(py);
+        options.set_item("sample_rate_hz", made.sample_rate_hz)?;
+        options.set_item("band_hz", band.upper_hz)?;
+        options.set_item("decimate", band.decimate)?;
+        options.set_item("anti_alias", band.anti_alias)?;
+        options.set_item("already_filtered", band.already_filtered)?;
+        options.set_item("hysteresis", travel.hysteresis)?;
+        options.set_item("minimum_travel", travel.minimum)?;
+        options.set_item("turn_rad_per_unit", travel.turn_rad_per_unit)?;
+        options.set_item("load_n", made.load_n.as_ref())?;
+        Ok((PyTuple::new(py, [&made.position])?, options))
     }
 
     fn __len__(&self) -> usize {
-        self.0.len()
+        self.core.len()
     }
 
     #[getter]
     fn resolution(&self) -> f64 {
-        self.0.resolution()
+        self.core.resolution()
     }
 
     #[getter]
     fn slowest_speed(&self) -> f64 {
-        self.0.slowest_speed()
+        self.core.slowest_speed()
     }
 
     #[getter]
     fn range(&self) -> f64 {
-        self.0.range()
+        self.core.range()
     }
 
     #[getter]
     fn decimate(&self) -> usize {
-        self.0.decimate()
+        self.core.decimate()
     }
 
     /// Position, speed and acceleration at the kept samples.
     fn kept<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 3] {
-        self.0.kept().map(|v| v.into_pyarray(py))
+        self.core.kept().map(|v| v.into_pyarray(py))
     }
 
     /// (onset, turn, direction, onset uncertainty in seconds) of every stroke, in samples of the full rate.
     fn strokes(&self) -> Vec<(usize, usize, f64, f64)> {
-        self.0
+        self.core
             .strokes()
             .iter()
             .map(|s| (s.onset, s.turn, s.direction, s.onset_uncertainty_s))
@@ -107,7 +148,7 @@ impl Recording {
         channel: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let x = channel.as_slice()?;
-        let kept = py.detach(|| self.0.measured(x)).map_err(CoreError)?;
+        let kept = py.detach(|| self.core.measured(x)).map_err(CoreError)?;
         Ok(kept.into_pyarray(py))
     }
 
@@ -118,7 +159,7 @@ impl Recording {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = terms(model);
         Ok(py
-            .detach(|| self.0.start_shift(&model))
+            .detach(|| self.core.start_shift(&model))
             .map_err(CoreError)?
             .into_pyarray(py))
     }
@@ -132,9 +173,11 @@ impl Recording {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let model = terms(model);
         let columns = py
-            .detach(|| self.0.columns(&model, &wanted))
+            .detach(|| self.core.columns(&model, &wanted))
             .map_err(CoreError)?;
-        let shape = [columns.len(), columns.first().map_or(0, Vec::len)];
+        // Terms without a column of their own (a delay alone) make none, of the run's length all the same.
+        let kept = || self.core.len().div_ceil(self.core.decimate());
+        let shape = [columns.len(), columns.first().map_or_else(kept, Vec::len)];
         columns.concat().into_pyarray(py).reshape(shape)
     }
 
@@ -150,7 +193,7 @@ impl Recording {
         let (model, rows) = (terms(model), rows(strokes));
         let y = effort.as_slice()?;
         let made = py
-            .detach(|| self.0.normal_equations(&model, &given, y, &rows))
+            .detach(|| self.core.normal_equations(&model, &given, y, &rows))
             .map_err(CoreError)?;
         array(py, made)
     }
