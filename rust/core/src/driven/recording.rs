@@ -162,9 +162,9 @@ impl Recording {
             smooth = smoothed(&quiet)?;
             quiet
         } else {
+            resolution.step = resolution.step.max(FINEST * span(&smooth));
             position.to_vec()
         };
-        resolution.step = resolution.step.max(FINEST * span(&smooth));
         let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
         let strokes = strokes(&turns, &seen, resolution.step, sample_rate_hz);
         if let Some(load) = load_n {
