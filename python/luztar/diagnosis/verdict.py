@@ -94,7 +94,8 @@ def _shows_away_from_reversals(fitted: Fit, c: Candidate) -> bool:
     def away(residual: Sequence[np.ndarray]) -> float:
         return rms(np.concatenate([e[r.usable & ~r.zone] for r, e in zip(fitted.runs, residual, strict=True)]))
 
-    with_it = [r.effort - predict(r, m, state.coefficients) for r, m in zip(fitted.runs, state.made.matrix, strict=True)]
+    modelled = [predict(r, m, state.coefficients) for r, m in zip(fitted.runs, state.made.matrix, strict=True)]
+    with_it = [r.effort - p for r, p in zip(fitted.runs, modelled, strict=True)]
     return away(with_it) <= (1.0 - PRACTICAL_GAIN) * away(fitted.residual)
 
 
