@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Timing:
-    """What one call took, in seconds per call: ``median_s`` and ``least_s`` by the clock, ``cpu_s`` median of CPU time."""
+    """What one call took, in seconds per call: median and least by the clock, median of CPU time, every round."""
 
     name: str
     median_s: float

@@ -57,6 +57,21 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// The same of a part that begins at this index of the whole.
+    #[must_use]
+    pub(crate) fn moved(self, by: usize) -> Self {
+        match self {
+            Self::NonFinite { name, index, value } => Self::NonFinite {
+                name,
+                index: index + by,
+                value,
+            },
+            other => other,
+        }
+    }
+}
+
 /// Refuses NaN and infinities, naming the first position.
 ///
 /// # Errors

@@ -1,0 +1,114 @@
+"""Quantiles of streams: within a stated relative error, or exact where the data are whole numbers."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+
+from .. import _core
+from .._arrays import number
+from .._stream import Stream
+from ..errors import ParameterError
+
+
+class QuantileSketch(Stream, _core.QuantileSketch):
+    """Quantiles with a hard bound on their relative error, in memory that does not grow with the stream.
+
+    Parameters
+    ----------
+    relative_error : float
+        7.7e-6 to 0.25. What holds is the next power of two below (``.relative_error``).
+
+    Notes
+    -----
+    ``quantile(q)`` is within the bound of the sample whose rank is exactly ``floor(q (n - 1))``
+    (``test_sketch_is_within_its_bound_of_the_exact_rank``); magnitudes below 2.3e-308 count as zero. Merging adds
+    counts: parts merged in any order are the sketch of the whole, exactly. Buckets are the leading bits of the number,
+    so a push costs neither a logarithm nor a search; one that meets a magnitude outside 1e-9 to 1e9 for the first time may
+    allocate. The guarantee is that of [1]_. Memory at 1 %: 61 KiB.
+
+    References
+    ----------
+    .. [1] Masson, Rim, Lee, "DDSketch", Proc. VLDB Endowment 12 (2019) 2195.
+
+    Examples
+    --------
+    >>> s = QuantileSketch(0.01)
+    >>> s.push(range(1, 1001))
+    >>> abs(s.quantile(0.5) - 500) <= 500 * s.relative_error
+    True
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, relative_error: float = 0.01) -> QuantileSketch:  # noqa: D102
+        return super().__new__(cls, number("relative_error", relative_error))
+
+    def __repr__(self) -> str:
+        return f"<luztar.stats.QuantileSketch: {self.count} samples, within {100 * self.relative_error:.3g} %>"
+
+
+class Counts(Stream, _core.Counts):
+    """Every value of int16 or int32 data counted: quantiles, mean and deviation without any error.
+
+    Notes
+    -----
+    Made for converter counts. Memory: 32 KiB for each page of 4096 neighbouring values that occur, 8192 pages at most
+    (twice the range of a 24-bit converter).
+
+    Examples
+    --------
+    >>> c = Counts()
+    >>> c.push(np.array([3, 1, 2, 2], dtype=np.int16))
+    >>> c.quantile(0.5), c.min, c.max, c.mean
+    (2.0, 1, 3, 2.0)
+    """
+
+    __slots__ = ()
+
+    def push(self, chunk: Any) -> None:
+        """Count samples.
+
+        Parameters
+        ----------
+        chunk : array_like of whole numbers, shape (n,)
+            Any integer type; values must fit into 32 bits.
+
+        Raises
+        ------
+        ParameterError
+            Not whole numbers, beyond 32 bits, or spread over too many pages.
+        """
+        array = np.asarray(chunk)
+        if array.ndim != 1 or (array.dtype.kind not in "iu" and array.size):
+            raise ParameterError(
+                f"chunk is {array.dtype} of the shape {array.shape}", "chunk", "Give a vector of whole numbers."
+            )
+        if array.dtype.kind == "i" and array.dtype.itemsize == 2:
+            self.push_int16(np.require(array, np.int16, ["C", "A"]))
+            return
+        if array.size and not (-(2**31) <= int(array.min()) and int(array.max()) < 2**31):
+            raise ParameterError("chunk holds values beyond 32 bits", "chunk", "Use a QuantileSketch.")
+        self.push_int32(np.require(array.astype(np.int32, copy=False), np.int32, ["C", "A"]))
+
+    def quantile(self, q: float, method: Literal["linear", "lower"] = "linear") -> float | None:
+        """Return a quantile as NumPy defines it, exactly.
+
+        Parameters
+        ----------
+        q : float
+            0 to 1.
+        method : {"linear", "lower"}
+            Between the two neighbouring samples, or the lower of them.
+        """
+        if method not in ("linear", "lower"):
+            raise ParameterError(f"method is {method!r}", "method", 'Give "linear" or "lower".')
+        found = self.neighbours(number("q", q))
+        if found is None:
+            return None
+        low, high, between = found
+        return float(low if method == "lower" else low + (high - low) * between)
+
+    def __repr__(self) -> str:
+        return f"<luztar.stats.Counts: {self.count} samples from {self.min} to {self.max}>"

@@ -1,0 +1,73 @@
+//! Arrays come in here: an aligned, contiguous float64 vector as it is, anything else by way of `luztar._arrays`.
+
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::CoreError;
+
+/// Work on fewer samples is done with the interpreter lock held: releasing it would cost more than the work.
+pub const LONG: usize = 8192;
+
+/// Runs work on this many samples, without the interpreter lock if they are many.
+pub fn run<R: Send>(py: Python<'_>, samples: usize, work: impl FnOnce() -> R + Send) -> R {
+    if samples < LONG {
+        work()
+    } else {
+        py.detach(work)
+    }
+}
+
+/// The array itself if it is contiguous, aligned and of this type.
+pub fn as_it_lies<'py, T: Element>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArray1<'py, T>> {
+    let array = value.cast::<PyArray1<T>>().ok()?;
+    let lies_well = array.data().is_aligned() && array.is_c_contiguous();
+    if lies_well {
+        array.try_readonly().ok()
+    } else {
+        None
+    }
+}
+
+/// A float64 vector, converted if need be; NaN is for the core to refuse or to skip.
+pub fn vector<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
+    match as_it_lies(value) {
+        Some(array) => Ok(array),
+        None => Ok(by_the_python_door(name, value, false)?.extract()?),
+    }
+}
+
+/// The core's error, or, for NaN and infinities, the same with all their positions.
+pub fn explained(error: luztar::Error, name: &str, value: &Bound<'_, PyAny>) -> PyErr {
+    if matches!(error, luztar::Error::NonFinite { .. })
+        && let Err(positions) = by_the_python_door(name, value, true)
+    {
+        return positions;
+    }
+    CoreError(error).into()
+}
+
+/// The same where either of several arrays may be the culprit.
+pub fn explained_of(error: luztar::Error, arrays: &[(&str, &Bound<'_, PyAny>)]) -> PyErr {
+    let luztar::Error::NonFinite { name: culprit, .. } = &error else {
+        return CoreError(error).into();
+    };
+    match arrays.iter().find(|(name, _)| name == culprit) {
+        Some((name, value)) => explained(error, name, value),
+        None => CoreError(error).into(),
+    }
+}
+
+fn by_the_python_door<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    finite: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = value.py();
+    let options = PyDict::new(py);
+    options.set_item("minimum", 0)?;
+    options.set_item("finite", finite)?;
+    py.import("luztar._arrays")?
+        .getattr("vector")?
+        .call((name, value), Some(&options))
+}

@@ -1,0 +1,178 @@
+//! The triangular factor of a tall matrix whose rows come in blocks: what least squares needs to keep of them.
+//!
+//! A block of rows is reflected into the factor column by column; the factor of everything so far is as accurate as a
+//! Householder QR of the whole matrix. The last column is the right-hand side: its last entry is then the length of the
+//! residual, found without a difference of sums.
+//!
+//! Source: Golub, Van Loan, "Matrix Computations", 4th ed., sections 5.1.7 (reflections), 6.5 (adding rows); Demmel,
+//! Grigori, Hoemmen, Langou, SIAM J. Sci. Comput. 34 (2012) A206, the same over blocks (TSQR).
+
+use crate::stats::simd::{self, Kernel};
+
+/// Rows reflected together: up to a dozen columns of them stay in the first-level cache.
+pub(super) const ROWS: usize = 128;
+
+/// The factor and the block of rows that waits to be reflected into it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Triangle {
+    width: usize,
+    /// Row by row, the lower part zero.
+    factor: Vec<f64>,
+    /// Column by column, `ROWS` apart.
+    waiting: Vec<f64>,
+    filled: usize,
+    /// By how much the waiting rows are too large: what came before fades when they are reflected.
+    gain: f64,
+}
+
+/// A gain above this is settled at once, long before squares could overflow.
+const MOST_GAIN: f64 = 1e60;
+
+impl Triangle {
+    pub(super) fn new(width: usize) -> Self {
+        Self {
+            width,
+            factor: vec![0.0; width * width],
+            waiting: vec![0.0; width * ROWS],
+            filled: 0,
+            gain: 1.0,
+        }
+    }
+
+    pub(super) fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Adds one row, times a factor.
+    #[inline]
+    pub(super) fn push(&mut self, row: impl Iterator<Item = f64>, times: f64) {
+        let times = times * self.gain;
+        for (column, v) in row.enumerate() {
+            self.waiting[column * ROWS + self.filled] = v * times;
+        }
+        self.filled += 1;
+        if self.filled == ROWS {
+            self.reflect();
+        }
+    }
+
+    /// Multiplies everything so far by a factor below one: by making what follows larger until the next reflection.
+    pub(super) fn fade(&mut self, factor: f64) {
+        self.gain /= factor;
+        if self.gain > MOST_GAIN {
+            self.reflect();
+        }
+    }
+
+    /// Reflects the waiting rows into the factor.
+    pub(super) fn reflect(&mut self) {
+        if self.filled > 0 {
+            simd::run(Reflect {
+                width: self.width,
+                factor: &mut self.factor,
+                rows: &mut self.waiting,
+                count: self.filled,
+            });
+            self.filled = 0;
+        }
+        if self.gain != 1.0 {
+            let factor = 1.0 / self.gain;
+            self.factor.iter_mut().for_each(|v| *v *= factor);
+            self.gain = 1.0;
+        }
+    }
+
+    /// Entry of the factor, once nothing waits.
+    #[inline]
+    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
+        self.factor[row * self.width + column]
+    }
+
+    pub(super) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.factor[row * self.width + column]
+    }
+
+    /// The upper part, row by row, once nothing waits.
+    pub(super) fn upper(&self) -> impl Iterator<Item = f64> {
+        (0..self.width).flat_map(move |i| (i..self.width).map(move |j| self.at(i, j)))
+    }
+
+    /// Solves `R t = v` in place over the leading columns; no diagonal entry may be zero.
+    pub(super) fn solve(&self, v: &mut [f64]) {
+        for i in (0..v.len()).rev() {
+            let mut rest = v[i];
+            for j in i + 1..v.len() {
+                rest -= self.at(i, j) * v[j];
+            }
+            v[i] = rest / self.at(i, i);
+        }
+    }
+
+    /// Solves `R' t = v` in place over the leading columns.
+    pub(super) fn solve_transposed(&self, v: &mut [f64]) {
+        for i in 0..v.len() {
+            let mut rest = v[i];
+            for j in 0..i {
+                rest -= self.at(j, i) * v[j];
+            }
+            v[i] = rest / self.at(i, i);
+        }
+    }
+}
+
+struct Reflect<'a> {
+    width: usize,
+    factor: &'a mut [f64],
+    rows: &'a mut [f64],
+    count: usize,
+}
+
+impl Kernel for Reflect<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let k = self.width;
+        for j in 0..k {
+            let (left, right) = self.rows.split_at_mut((j + 1) * ROWS);
+            let v = &left[j * ROWS..j * ROWS + self.count];
+            let squares = dot(v, v);
+            if squares == 0.0 {
+                continue;
+            }
+            let head = self.factor[j * k + j];
+            // The sign that avoids cancellation in `head - length`.
+            let length = -(head * head + squares).sqrt().copysign(head);
+            let v0 = head - length;
+            // 2 / |v|^2 with |v|^2 = v0^2 + squares
+            let scale = 2.0 / (v0 * v0 + squares);
+            self.factor[j * k + j] = length;
+            for (l, column) in (j + 1..k).zip(right.chunks_exact_mut(ROWS)) {
+                let column = &mut column[..self.count];
+                let top = &mut self.factor[j * k + l];
+                let s = (v0 * *top + dot(v, column)) * scale;
+                *top -= s * v0;
+                for (c, v) in column.iter_mut().zip(v) {
+                    *c -= s * v;
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 16;
+    let mut lanes = [0.0; LANES];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            lanes[lane] += a[lane] * b[lane];
+        }
+    }
+    let mut sum = 0.0;
+    for (a, b) in a_rest.iter().zip(b_rest) {
+        sum += a * b;
+    }
+    sum + lanes.iter().sum::<f64>()
+}

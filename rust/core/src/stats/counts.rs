@@ -1,0 +1,234 @@
+//! Every value of integer data counted: exact quantiles, and exact sums, of converter counts.
+//!
+//! Counts lie in pages of neighbouring values that are made when one of them is first met, so that 16 bits, or a narrow
+//! band of 24 or 32, take little memory.
+
+use std::collections::BTreeMap;
+
+use super::sketch::rank;
+use crate::error::Error;
+
+/// Values on one page: 32 KiB of counts.
+const PAGE_BITS: u32 = 12;
+const PAGE: usize = 1 << PAGE_BITS;
+
+/// The most pages, 256 MiB: twice a 24-bit converter's range. Data that spread wider want a sketch.
+const MOST_PAGES: usize = 8192;
+
+/// An integer that can be counted.
+pub trait Countable: Copy {
+    /// The same number, wide enough for all.
+    fn wide(self) -> i32;
+}
+
+impl Countable for i16 {
+    fn wide(self) -> i32 {
+        i32::from(self)
+    }
+}
+
+impl Countable for i32 {
+    fn wide(self) -> i32 {
+        self
+    }
+}
+
+/// How often every value occurred.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Counts {
+    pages: BTreeMap<i32, Vec<u64>>,
+    total: u64,
+}
+
+impl Counts {
+    /// Nothing counted yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Counts samples.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where the values spread over more than 8192 pages of 4096 neighbours; nothing of a
+    /// refused chunk is counted.
+    pub fn push<T: Countable>(&mut self, x: &[T]) -> Result<(), Error> {
+        self.prepare(x.iter().map(|v| v.wide()))?;
+        let mut rest = x;
+        while let Some(first) = rest.first() {
+            // Neighbours in time are neighbours in value: the page is looked up once for a stretch of them.
+            let at = first.wide() >> PAGE_BITS;
+            let same = rest.iter().position(|v| v.wide() >> PAGE_BITS != at);
+            let (stretch, later) = rest.split_at(same.unwrap_or(rest.len()));
+            if let Some(page) = self.pages.get_mut(&at) {
+                for v in stretch {
+                    page[v.wide() as usize & (PAGE - 1)] += 1;
+                }
+            }
+            rest = later;
+        }
+        self.total += x.len() as u64;
+        Ok(())
+    }
+
+    /// Makes the pages these values need, all or none.
+    fn prepare(&mut self, values: impl Iterator<Item = i32>) -> Result<(), Error> {
+        let mut missing: Vec<i32> = vec![];
+        let mut last = None;
+        for v in values {
+            let at = v >> PAGE_BITS;
+            if last == Some(at) {
+                continue;
+            }
+            last = Some(at);
+            if !self.pages.contains_key(&at) && !missing.contains(&at) {
+                if self.pages.len() + missing.len() == MOST_PAGES {
+                    return Err(Error::OutOfRange {
+                        name: "x",
+                        value: f64::from(v),
+                        interval: format!(
+                            "one of {MOST_PAGES} pages of {PAGE} neighbours; use a QuantileSketch"
+                        ),
+                    });
+                }
+                missing.push(at);
+            }
+        }
+        for at in missing {
+            self.pages.insert(at, vec![0; PAGE]);
+        }
+        Ok(())
+    }
+
+    /// Adds what another object has counted.
+    ///
+    /// # Errors
+    /// As [`Self::push`].
+    pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
+        self.prepare(other.pages.keys().map(|at| at << PAGE_BITS))?;
+        for (at, theirs) in &other.pages {
+            for (mine, more) in self.pages.entry(*at).or_default().iter_mut().zip(theirs) {
+                *mine += more;
+            }
+        }
+        self.total += other.total;
+        Ok(())
+    }
+
+    /// How many samples.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.total
+    }
+
+    /// The values that occurred, in order, and how often.
+    pub fn values(&self) -> impl DoubleEndedIterator<Item = (i32, u64)> {
+        self.pages.iter().flat_map(|(at, page)| {
+            let numbered = page.iter().enumerate();
+            numbered
+                .filter(|(_, n)| **n > 0)
+                .map(move |(i, n)| ((at << PAGE_BITS) + i as i32, *n))
+        })
+    }
+
+    /// The smallest and the largest value; None of nothing.
+    #[must_use]
+    pub fn extremes(&self) -> Option<(i32, i32)> {
+        Some((self.values().next()?.0, self.values().next_back()?.0))
+    }
+
+    /// The value of rank `floor(q (n - 1))` and the one after it, from which any kind of quantile follows, and how
+    /// far between them q lies; None of nothing.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for q outside [0, 1].
+    pub fn quantile(&self, q: f64) -> Result<Option<(i32, i32, f64)>, Error> {
+        let rank = rank(q, self.total)?;
+        let between = q * self.total.saturating_sub(1) as f64 - rank as f64;
+        let mut below = 0;
+        let mut found = None;
+        for (value, n) in self.values() {
+            below += n;
+            if let Some(low) = found {
+                return Ok(Some((low, value, between)));
+            }
+            if below > rank + 1 {
+                return Ok(Some((value, value, between)));
+            }
+            if below > rank {
+                found = Some(value);
+            }
+        }
+        Ok(found.map(|value| (value, value, between)))
+    }
+
+    /// The mean and the population standard deviation, from sums without any rounding; None of nothing.
+    #[must_use]
+    pub fn mean_and_std(&self) -> Option<(f64, f64)> {
+        if self.total == 0 {
+            return None;
+        }
+        let (n, origin) = (i128::from(self.total), i128::from(self.values().next()?.0));
+        let (mut sum, mut squares) = (0_i128, 0_i128);
+        for (value, times) in self.values() {
+            let (d, times) = (i128::from(value) - origin, i128::from(times));
+            sum += d * times;
+            squares += d * d * times;
+        }
+        // n^2 times the variance; below 2^64 * 2^64 it fits for fewer than 2^32 samples of full 32 bits.
+        let scaled = n
+            .checked_mul(squares)
+            .zip(sum.checked_mul(sum))
+            .map(|(a, b)| a - b);
+        let variance = scaled.map_or_else(
+            || squares as f64 / n as f64 - (sum as f64 / n as f64).powi(2),
+            |exact| exact as f64 / (n as f64 * n as f64),
+        );
+        // The whole part is exact; only the fraction rounds.
+        let (whole, part) = (sum.div_euclid(n), sum.rem_euclid(n));
+        Some((
+            (origin + whole) as f64 + part as f64 / n as f64,
+            variance.max(0.0).sqrt(),
+        ))
+    }
+
+    /// Value and count of everything that occurred (values shifted by 2^31): all there is to store.
+    #[must_use]
+    pub fn state(&self) -> (Vec<u64>, Vec<f64>) {
+        let shifted = |v: i32| (i64::from(v) - i64::from(i32::MIN)) as u64;
+        (
+            self.values().flat_map(|(v, n)| [shifted(v), n]).collect(),
+            vec![],
+        )
+    }
+
+    /// Rebuilds what [`Self::state`] stored.
+    ///
+    /// # Errors
+    /// [`Error::Length`] or [`Error::OutOfRange`] for numbers it cannot have made.
+    pub fn from_state(integers: &[u64], _numbers: &[f64]) -> Result<Self, Error> {
+        let (pairs, odd) = integers.as_chunks::<2>();
+        if !odd.is_empty() {
+            return Err(Error::Length {
+                name: "state",
+                expected: "pairs of value and count".into(),
+                got: integers.len(),
+            });
+        }
+        let mut counts = Self::new();
+        for [shifted, n] in pairs {
+            let value = i64::from(i32::MIN).saturating_add_unsigned(*shifted);
+            let value = i32::try_from(value).map_err(|_| Error::OutOfRange {
+                name: "state",
+                value: value as f64,
+                interval: "32 bits".into(),
+            })?;
+            counts.prepare(std::iter::once(value))?;
+            if let Some(page) = counts.pages.get_mut(&(value >> PAGE_BITS)) {
+                page[value as usize & (PAGE - 1)] = *n;
+            }
+            counts.total = counts.total.saturating_add(*n);
+        }
+        Ok(counts)
+    }
+}
