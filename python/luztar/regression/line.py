@@ -145,7 +145,7 @@ def line(x: Any, y: Any, weights: Any = None) -> Line:
     2.0
     """
     weights = None if weights is None else vector("weights", weights, minimum=0)
-    return _line(_core.fit_line(vector("x", x, minimum=2), vector("y", y, minimum=2), weights))
+    return _line(_core.fit_line(x, y, weights))
 
 
 class LineSums(Stream, _core.LineSums):

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._arrays import number, vector, whole_number
+from .._arrays import number, rows, vector, whole_number
 from .._stream import Stream
-from ..errors import ParameterError
 from .intervals import student_quantile
 
 _MOST_PREDICTORS = 512
@@ -61,8 +60,7 @@ class LinearFit:
     def predict(self, x: Any) -> np.ndarray:
         """Return the fit at rows of predictors, shape (n, p) or (n,) for one predictor."""
         slopes = self.coefficients[int(self.intercept) :]
-        rows = _rows(x, slopes.size)
-        return rows @ slopes + (self.coefficients[0] if self.intercept else 0.0)
+        return rows("x", x, slopes.size) @ slopes + (self.coefficients[0] if self.intercept else 0.0)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as plain JSON values."""
@@ -114,8 +112,7 @@ def linear(x: Any, y: Any, weights: Any = None, *, intercept: bool = True) -> Li
     >>> fit.coefficients.round(9).tolist()
     [1.0, 2.0, 3.0]
     """
-    rows = _rows(x, None)
-    fit = _core.fit_linear(rows, vector("y", y, minimum=0), _weights(weights), bool(intercept))
+    fit = _core.fit_linear(x, y, _weights(weights), bool(intercept))
     return LinearFit(*fit, bool(intercept))
 
 
@@ -152,7 +149,7 @@ class LinearSums(Stream, _core.LinearSums):
 
     def push(self, x: Any, y: Any, weights: Any = None) -> None:
         """Add rows: x of shape (n, p) or (n,) for one predictor, y and weights of shape (n,), n >= 0."""
-        self.push_rows(_rows(x, self.predictors), vector("y", y, minimum=0), _weights(weights))
+        self.push_rows(x, y, _weights(weights))
 
     def fit(self) -> LinearFit:
         """Return the fit; raises ParameterError for too few rows or columns that depend on each other."""
@@ -161,17 +158,6 @@ class LinearSums(Stream, _core.LinearSums):
 
     def __repr__(self) -> str:
         return f"<luztar.regression.LinearSums: {self.count} rows of {self.predictors} predictors>"
-
-
-def _rows(x: Any, predictors: int | None) -> np.ndarray:
-    # a whole number of values is looked at flat, where the one door for arrays checks it
-    array = x if isinstance(x, np.ndarray) else np.asarray(x)
-    if array.ndim == 1 and predictors in (None, 1):
-        array = array[:, np.newaxis]
-    if array.ndim != 2 or (predictors is not None and array.shape[1] != predictors):
-        wanted = "p" if predictors is None else predictors
-        raise ParameterError(f"x has the shape {array.shape}", "x", f"Give rows of predictors, shape (n, {wanted}).")
-    return vector("x", array.reshape(-1), minimum=0, finite=False).reshape(array.shape)
 
 
 def _weights(weights: Any) -> np.ndarray | None:

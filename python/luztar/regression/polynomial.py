@@ -119,7 +119,7 @@ def polynomial(x: Any, y: Any, degree: int, weights: Any = None) -> PolynomialFi
     """
     degree = whole_number("degree", degree, 0, _HIGHEST)
     weights = None if weights is None else vector("weights", weights, minimum=0)
-    return _fit(_core.fit_polynomial(vector("x", x), vector("y", y), weights, degree))
+    return _fit(_core.fit_polynomial(x, y, weights, degree))
 
 
 class PolynomialSums(Stream, _core.PolynomialSums):

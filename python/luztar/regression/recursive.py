@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._arrays import number, vector
+from .._arrays import number, rows, vector
 from .._stream import Stream
-from .linear import _rows
 
 
 class RecursiveLeastSquares(Stream, _core.Recursive):
@@ -55,18 +54,18 @@ class RecursiveLeastSquares(Stream, _core.Recursive):
 
     def push(self, x: Any, y: Any) -> None:
         """Add rows: x of shape (n, p), or (n,) for one coefficient, y of shape (n,), n >= 0."""
-        self.push_rows(_rows(x, self.size), vector("y", y, minimum=0), None)
+        self.push_rows(x, y, None)
 
     def push_and_compare(self, x: Any, y: Any) -> np.ndarray:
         """Add rows and return y less the prediction made just before each, shape (n,)."""
         y = vector("y", y, minimum=0)
         errors = np.empty_like(y)
-        self.push_rows(_rows(x, self.size), y, errors)
+        self.push_rows(x, y, errors)
         return errors
 
     def predict(self, x: Any) -> np.ndarray:
         """Return the prediction for rows, shape (n,)."""
-        return _rows(x, self.size) @ self.coefficients
+        return rows("x", x, self.size) @ self.coefficients
 
     def __repr__(self) -> str:
         return f"<luztar.regression.RecursiveLeastSquares: {self.count} rows, coefficients {self.coefficients}>"

@@ -8,7 +8,7 @@ from typing import Any
 from .. import _core
 from .._arrays import number, vector
 from .intervals import normal_quantile
-from .linear import LinearFit, _rows
+from .linear import LinearFit
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,5 @@ def huber(x: Any, y: Any, *, intercept: bool = True, threshold: float = 1.345) -
     >>> round(float(fit.fit.coefficients[1]), 1), fit.outliers
     (2.2, 1)
     """
-    found, scale, outliers, repetitions = _core.huber(
-        _rows(x, None), vector("y", y, minimum=0), bool(intercept), number("threshold", threshold)
-    )
+    found, scale, outliers, repetitions = _core.huber(x, y, bool(intercept), number("threshold", threshold))
     return HuberFit(LinearFit(*found, bool(intercept)), scale, outliers, repetitions)

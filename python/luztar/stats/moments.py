@@ -99,7 +99,7 @@ class Moments(Stream, _core.Moments):
 
     Notes
     -----
-    ``push`` takes a float or an array. Samples are summed in blocks of 512, each centred on its own mean and joined by
+    ``push`` takes a float or an array. Samples are summed in blocks of 1024, each centred on its own mean and joined by
     the pairwise update [1]_ [2]_; the running mean keeps its rounding remainder. The figures are the same to the last
     bit however the stream was cut into chunks (``test_chunks_do_not_change_a_bit``), and on every instruction set. The
     standard deviation agrees with the exact rational answer to 14 digits on NumAcc1 to 4

@@ -25,8 +25,8 @@ class QuantileSketch(Stream, _core.QuantileSketch):
     ``quantile(q)`` is within the bound of the sample whose rank is exactly ``floor(q (n - 1))``
     (``test_sketch_is_within_its_bound_of_the_exact_rank``); magnitudes below 2.3e-308 count as zero. Merging adds
     counts: parts merged in any order are the sketch of the whole, exactly. Buckets are the leading bits of the number,
-    so a push costs neither a logarithm nor a search; one that meets a magnitude outside 1e-9 to 1e9 for the first time may
-    allocate. The guarantee is that of [1]_. Memory at 1 %: 61 KiB.
+    so a push costs neither a logarithm nor a search; one that meets a magnitude outside 1e-9 to 1e9 for the first time
+    may allocate. The guarantee is that of [1]_. Memory at 1 %: 61 KiB.
 
     References
     ----------

@@ -1,6 +1,9 @@
 //! Arrays come in here: an aligned, contiguous float64 vector as it is, anything else by way of `luztar._arrays`.
 
-use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -35,6 +38,22 @@ pub fn vector<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonly
         Some(array) => Ok(array),
         None => Ok(by_the_python_door(name, value, false)?.extract()?),
     }
+}
+
+/// Rows of float64 numbers, converted by `luztar._arrays` if need be.
+pub fn rows<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    columns: Option<usize>,
+) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    if let Ok(array) = value.cast::<PyArray2<f64>>() {
+        let fits = columns.is_none_or(|columns| array.shape()[1] == columns);
+        if fits && array.data().is_aligned() && array.is_c_contiguous() {
+            return Ok(array.try_readonly()?);
+        }
+    }
+    let door = value.py().import("luztar._arrays")?.getattr("rows")?;
+    Ok(door.call1((name, value, columns))?.extract()?)
 }
 
 /// The core's error, or, for NaN and infinities, the same with all their positions.

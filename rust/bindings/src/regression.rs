@@ -1,7 +1,7 @@
 //! Least squares.
 
 use luztar::regression as core;
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadwriteArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::door;
@@ -45,13 +45,16 @@ fn optional<'a>(array: Option<&'a PyReadonlyArray1<'_, f64>>) -> PyResult<Option
 #[pyfunction]
 pub fn fit_line(
     py: Python<'_>,
-    x: PyReadonlyArray1<'_, f64>,
-    y: PyReadonlyArray1<'_, f64>,
+    x: &Bound<'_, PyAny>,
+    y: &Bound<'_, PyAny>,
     weights: Option<PyReadonlyArray1<'_, f64>>,
 ) -> PyResult<LineTuple> {
-    let (x, y, weights) = (x.as_slice()?, y.as_slice()?, optional(weights.as_ref())?);
-    let line = door::run(py, x.len(), || core::fit_line(x, y, weights)).map_err(CoreError)?;
-    Ok(line_tuple(line))
+    let (xs, ys) = (door::vector("x", x)?, door::vector("y", y)?);
+    let (xs, ys, weights) = (xs.as_slice()?, ys.as_slice()?, optional(weights.as_ref())?);
+    let line = door::run(py, xs.len(), || core::fit_line(xs, ys, weights));
+    Ok(line_tuple(line.map_err(|e| {
+        door::explained_of(e, &[("x", x), ("y", y)])
+    })?))
 }
 
 /// The centred sums of a line, pushed and merged.
@@ -195,12 +198,13 @@ fn linear_tuple(py: Python<'_>, fit: core::LinearFit) -> LinearTuple<'_> {
 #[pyfunction]
 pub fn fit_linear<'py>(
     py: Python<'py>,
-    x: PyReadonlyArray2<'py, f64>,
-    y: PyReadonlyArray1<'py, f64>,
+    x: &Bound<'py, PyAny>,
+    y: &Bound<'py, PyAny>,
     weights: Option<PyReadonlyArray1<'py, f64>>,
     intercept: bool,
 ) -> PyResult<LinearTuple<'py>> {
-    let predictors = x.as_array().ncols();
+    let (x, y) = (door::rows("x", x, None)?, door::vector("y", y)?);
+    let predictors = x.shape()[1];
     let (x, y, weights) = (x.as_slice()?, y.as_slice()?, optional(weights.as_ref())?);
     let fit = door::run(py, x.len(), || {
         core::fit_linear(x, y, weights, predictors, intercept)
@@ -226,12 +230,16 @@ impl LinearSums {
     fn push_rows(
         &mut self,
         py: Python<'_>,
-        x: PyReadonlyArray2<'_, f64>,
-        y: PyReadonlyArray1<'_, f64>,
+        x: &Bound<'_, PyAny>,
+        y: &Bound<'_, PyAny>,
         weights: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<()> {
-        let (x, y, weights) = (x.as_slice()?, y.as_slice()?, optional(weights.as_ref())?);
-        Ok(door::run(py, x.len(), || self.0.push(x, y, weights)).map_err(CoreError)?)
+        let (xs, ys) = (
+            door::rows("x", x, Some(self.0.predictors()))?,
+            door::vector("y", y)?,
+        );
+        let (xs, ys, weights) = (xs.as_slice()?, ys.as_slice()?, optional(weights.as_ref())?);
+        Ok(door::run(py, xs.len(), || self.0.push(xs, ys, weights)).map_err(CoreError)?)
     }
 
     /// Add the rows another object has seen.
@@ -374,12 +382,16 @@ impl Recursive {
     fn push_rows(
         &mut self,
         py: Python<'_>,
-        x: PyReadonlyArray2<'_, f64>,
-        y: PyReadonlyArray1<'_, f64>,
+        x: &Bound<'_, PyAny>,
+        y: &Bound<'_, PyAny>,
         errors: Option<PyReadwriteArray1<'_, f64>>,
     ) -> PyResult<()> {
         let mut errors = errors;
-        let (x, y) = (x.as_slice()?, y.as_slice()?);
+        let (xs, ys) = (
+            door::rows("x", x, Some(self.0.size()))?,
+            door::vector("y", y)?,
+        );
+        let (x, y) = (xs.as_slice()?, ys.as_slice()?);
         let errors = errors.as_mut().map(|e| e.as_slice_mut()).transpose()?;
         Ok(door::run(py, x.len(), || self.0.push(x, y, errors)).map_err(CoreError)?)
     }
@@ -433,12 +445,13 @@ pub fn theil_sen(
 #[pyfunction]
 pub fn huber<'py>(
     py: Python<'py>,
-    x: PyReadonlyArray2<'py, f64>,
-    y: PyReadonlyArray1<'py, f64>,
+    x: &Bound<'py, PyAny>,
+    y: &Bound<'py, PyAny>,
     intercept: bool,
     threshold: f64,
 ) -> PyResult<(LinearTuple<'py>, f64, u64, usize)> {
-    let predictors = x.as_array().ncols();
+    let (x, y) = (door::rows("x", x, None)?, door::vector("y", y)?);
+    let predictors = x.shape()[1];
     let (x, y) = (x.as_slice()?, y.as_slice()?);
     let h = py
         .detach(|| core::huber::huber(x, y, predictors, intercept, threshold))

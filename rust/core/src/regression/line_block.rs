@@ -2,13 +2,10 @@
 
 use super::line::Sums;
 use crate::stats::compensated::Compensated;
-use crate::stats::simd::{self, Kernel};
+use crate::stats::simd::{self, Kernel, Pack, Terms, sums};
 
-/// Points centred together: two reads of 2 x 4 KiB stay in the first-level cache.
-pub(super) const BLOCK: usize = 512;
-
-/// Independent partial sums: five sums of eight lanes fit the registers of every width above the baseline.
-const LANES: usize = 8;
+/// Points centred together: two reads of 2 x 8 KiB stay in the first-level cache.
+pub(super) const BLOCK: usize = 1024;
 
 /// The sums of a non-empty block.
 pub(super) fn of_block(x: &[f64], y: &[f64]) -> Sums {
@@ -37,25 +34,14 @@ impl Kernel for Plain<'_> {
     type Output = Sums;
 
     #[inline(always)]
-    fn run(self) -> Sums {
+    fn run<P: Pack>(self) -> Sums {
         let Self(x, y) = self;
-        let (x0, y0, n) = (x[0], y[0], x.len() as f64);
-        let [sx, sy] = lane_sums([x, y], |[x, y]| [x - x0, y - y0]);
-        let (mx, my) = (sx / n, sy / n);
-        let [dx, dy, xx, xy, yy] = lane_sums([x, y], |[x, y]| {
-            let (dx, dy) = ((x - x0) - mx, (y - y0) - my);
-            [dx, dy, dx * dx, dx * dy, dy * dy]
-        });
-        Sums {
-            count: x.len() as u64,
-            weight: n,
-            // The second pass corrects the means; the sums need it no more than those of the moments do.
-            x_mean: Compensated::sum(x0, mx + dx / n),
-            y_mean: Compensated::sum(y0, my + dy / n),
-            xx: xx.into(),
-            xy: xy.into(),
-            yy: yy.into(),
-        }
+        let n = x.len() as f64;
+        let origin = (x[0], y[0]);
+        let [sx, sy] = sums::<P, _, 2, 2>([x, y], &Distances { origin });
+        let mean = (sx / n, sy / n);
+        let products: [f64; 5] = sums::<P, _, 2, 5>([x, y], &Products { origin, mean });
+        assemble(x.len(), n, origin, mean, products)
     }
 }
 
@@ -65,31 +51,95 @@ impl Kernel for Weighted<'_> {
     type Output = Sums;
 
     #[inline(always)]
-    fn run(self) -> Sums {
+    fn run<P: Pack>(self) -> Sums {
         let Self(x, y, w) = self;
-        let count = x.len() as u64;
-        let (x0, y0) = (x[0], y[0]);
-        let [weight, sx, sy] = lane_sums([x, y, w], |[x, y, w]| [w, w * (x - x0), w * (y - y0)]);
+        let origin = (x[0], y[0]);
+        let [weight, sx, sy] = sums::<P, _, 3, 3>([x, y, w], &Distances { origin });
         if weight <= 0.0 {
             return Sums {
-                count,
+                count: x.len() as u64,
                 ..Sums::default()
             };
         }
-        let (mx, my) = (sx / weight, sy / weight);
-        let [dx, dy, xx, xy, yy] = lane_sums([x, y, w], |[x, y, w]| {
-            let (dx, dy) = ((x - x0) - mx, (y - y0) - my);
-            [w * dx, w * dy, w * dx * dx, w * dx * dy, w * dy * dy]
-        });
-        Sums {
-            count,
-            weight,
-            x_mean: Compensated::sum(x0, mx + dx / weight),
-            y_mean: Compensated::sum(y0, my + dy / weight),
-            xx: xx.into(),
-            xy: xy.into(),
-            yy: yy.into(),
-        }
+        let mean = (sx / weight, sy / weight);
+        let products: [f64; 5] = sums::<P, _, 3, 5>([x, y, w], &Products { origin, mean });
+        assemble(x.len(), weight, origin, mean, products)
+    }
+}
+
+#[inline(always)]
+fn assemble(
+    count: usize,
+    weight: f64,
+    origin: (f64, f64),
+    mean: (f64, f64),
+    [dx, dy, xx, xy, yy]: [f64; 5],
+) -> Sums {
+    Sums {
+        count: count as u64,
+        weight,
+        // The second pass corrects the means; the sums need it no more than those of the moments do.
+        x_mean: Compensated::sum(origin.0, mean.0 + dx / weight),
+        y_mean: Compensated::sum(origin.1, mean.1 + dy / weight),
+        xx: xx.into(),
+        xy: xy.into(),
+        yy: yy.into(),
+    }
+}
+
+/// Distances from the first point.
+struct Distances {
+    origin: (f64, f64),
+}
+
+impl Terms<2, 2> for Distances {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y]: [P; 2]) -> [P; 2] {
+        [
+            x.sub(P::splat(self.origin.0)),
+            y.sub(P::splat(self.origin.1)),
+        ]
+    }
+}
+
+impl Terms<3, 3> for Distances {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y, w]: [P; 3]) -> [P; 3] {
+        let [dx, dy] = self.of([x, y]);
+        [w, w.mul(dx), w.mul(dy)]
+    }
+}
+
+/// Distances from `origin + mean` and their products.
+struct Products {
+    origin: (f64, f64),
+    mean: (f64, f64),
+}
+
+impl Products {
+    #[inline(always)]
+    fn distances<P: Pack>(&self, x: P, y: P) -> (P, P) {
+        let ((x0, y0), (xm, ym)) = (self.origin, self.mean);
+        let dx = x.sub(P::splat(x0)).sub(P::splat(xm));
+        let dy = y.sub(P::splat(y0)).sub(P::splat(ym));
+        (dx, dy)
+    }
+}
+
+impl Terms<2, 5> for Products {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y]: [P; 2]) -> [P; 5] {
+        let (dx, dy) = self.distances(x, y);
+        [dx, dy, dx.mul(dx), dx.mul(dy), dy.mul(dy)]
+    }
+}
+
+impl Terms<3, 5> for Products {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y, w]: [P; 3]) -> [P; 5] {
+        let (dx, dy) = self.distances(x, y);
+        let (wx, wy) = (w.mul(dx), w.mul(dy));
+        [wx, wy, wx.mul(dx), wx.mul(dy), wy.mul(dy)]
     }
 }
 
@@ -105,51 +155,37 @@ impl Kernel for Residuals<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn run(self) -> f64 {
-        let Self(x, y, w, (xm, ym), slope) = self;
-        let square = |x: f64, y: f64| {
-            let dx = (x - xm.value) - xm.rest;
-            let residual = ((y - ym.value) - ym.rest) - slope * dx;
-            residual * residual
-        };
+    fn run<P: Pack>(self) -> f64 {
+        let Self(x, y, w, means, slope) = self;
+        let terms = Squares { means, slope };
         let [sum] = match w {
-            Some(w) => lane_sums([x, y, w], |[x, y, w]| [w * square(x, y)]),
-            None => lane_sums([x, y], |[x, y]| [square(x, y)]),
+            Some(w) => sums::<P, _, 3, 1>([x, y, w], &terms),
+            None => sums::<P, _, 2, 1>([x, y], &terms),
         };
         sum
     }
 }
 
-/// Sums of several terms per point, in independent lanes that are added at the end.
-#[inline(always)]
-fn lane_sums<const C: usize, const K: usize>(
-    columns: [&[f64]; C],
-    terms: impl Fn([f64; C]) -> [f64; K],
-) -> [f64; K] {
-    let mut lanes = [[0.0; LANES]; K];
-    let n = columns[0].len();
-    let whole = n - n % LANES;
-    let columns = columns.map(|c| &c[..n]);
-    let mut at = 0;
-    while at < whole {
-        let parts: [&[f64; LANES]; C] = columns.map(|c| c[at..].first_chunk().expect("whole"));
-        for lane in 0..LANES {
-            let t = terms(parts.map(|p| p[lane]));
-            for k in 0..K {
-                lanes[k][lane] += t[k];
-            }
-        }
-        at += LANES;
+struct Squares {
+    means: (Compensated, Compensated),
+    slope: f64,
+}
+
+impl Terms<2, 1> for Squares {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y]: [P; 2]) -> [P; 1] {
+        let (xm, ym) = self.means;
+        let dx = x.sub(P::splat(xm.value)).sub(P::splat(xm.rest));
+        let dy = y.sub(P::splat(ym.value)).sub(P::splat(ym.rest));
+        let residual = dy.sub(P::splat(self.slope).mul(dx));
+        [residual.mul(residual)]
     }
-    let mut sums = [0.0; K];
-    for k in 0..K {
-        sums[k] = lanes[k].iter().sum();
+}
+
+impl Terms<3, 1> for Squares {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [x, y, w]: [P; 3]) -> [P; 1] {
+        let [square] = self.of([x, y]);
+        [w.mul(square)]
     }
-    for i in whole..n {
-        let t = terms(columns.map(|c| c[i]));
-        for k in 0..K {
-            sums[k] += t[k];
-        }
-    }
-    sums
 }

@@ -7,7 +7,7 @@
 //! Source: Golub, Van Loan, "Matrix Computations", 4th ed., sections 5.1.7 (reflections), 6.5 (adding rows); Demmel,
 //! Grigori, Hoemmen, Langou, SIAM J. Sci. Comput. 34 (2012) A206, the same over blocks (TSQR).
 
-use crate::stats::simd::{self, Kernel};
+use crate::stats::simd::{self, Kernel, PACK, Pack, Terms, sums};
 
 /// Rows reflected together: up to a dozen columns of them stay in the first-level cache.
 pub(super) const ROWS: usize = 128;
@@ -131,12 +131,12 @@ impl Kernel for Reflect<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<P: Pack>(self) {
         let k = self.width;
         for j in 0..k {
             let (left, right) = self.rows.split_at_mut((j + 1) * ROWS);
             let v = &left[j * ROWS..j * ROWS + self.count];
-            let squares = dot(v, v);
+            let squares = dot::<P>(v, v);
             if squares == 0.0 {
                 continue;
             }
@@ -150,29 +150,39 @@ impl Kernel for Reflect<'_> {
             for (l, column) in (j + 1..k).zip(right.chunks_exact_mut(ROWS)) {
                 let column = &mut column[..self.count];
                 let top = &mut self.factor[j * k + l];
-                let s = (v0 * *top + dot(v, column)) * scale;
+                let s = (v0 * *top + dot::<P>(v, column)) * scale;
                 *top -= s * v0;
-                for (c, v) in column.iter_mut().zip(v) {
-                    *c -= s * v;
-                }
+                subtract::<P>(column, v, s);
             }
         }
     }
 }
 
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 16;
-    let mut lanes = [0.0; LANES];
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            lanes[lane] += a[lane] * b[lane];
-        }
+fn dot<P: Pack>(a: &[f64], b: &[f64]) -> f64 {
+    let [sum] = sums::<P, _, 2, 1>([a, b], &Product);
+    sum
+}
+
+struct Product;
+
+impl Terms<2, 1> for Product {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [a, b]: [P; 2]) -> [P; 1] {
+        [a.mul(b)]
     }
-    let mut sum = 0.0;
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        sum += a * b;
+}
+
+/// `column -= s * v`
+#[inline(always)]
+fn subtract<P: Pack>(column: &mut [f64], v: &[f64], s: f64) {
+    let times = P::splat(s);
+    let ((columns, column_rest), (vs, v_rest)) =
+        (column.as_chunks_mut::<PACK>(), v.as_chunks::<PACK>());
+    for (c, v) in columns.iter_mut().zip(vs) {
+        P::load(c).sub(times.mul(P::load(v))).store(c);
     }
-    sum + lanes.iter().sum::<f64>()
+    for (c, v) in column_rest.iter_mut().zip(v_rest) {
+        *c -= s * v;
+    }
 }

@@ -8,13 +8,10 @@
 //! (2008), eqs. 2.1 and 2.6, the third and fourth powers.
 
 use super::compensated::Compensated;
-use super::simd::{self, Kernel, Width};
+use super::simd::{self, Kernel, PACK, Pack, Terms, Width, sums};
 
-/// Samples centred together: two reads of 4 KiB stay in the first-level cache.
-pub(crate) const BLOCK: usize = 512;
-
-/// Independent partial sums, enough to fill the widest vector registers and hide the latency of an addition.
-const LANES: usize = 16;
+/// Samples centred together: two reads of 8 KiB stay in the first-level cache.
+pub(crate) const BLOCK: usize = 1024;
 
 /// What the pairwise update joins.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -104,24 +101,17 @@ impl<const SHAPE: bool> Kernel for BlockKernel<'_, SHAPE> {
 
     /// Two passes about the first sample.
     #[inline(always)]
-    fn run(self) -> Self::Output {
+    fn run<P: Pack>(self) -> Self::Output {
         let block = self.0;
         let origin = block[0];
         let n = block.len() as f64;
-        let (sum, range) = sum_and_range(block, origin);
+        let (sum, range) = sum_and_range::<P>(block, origin);
         let mean = sum / n;
         let (deviation, squares, cubes, fourths) = if SHAPE {
-            let [a, b, c, d] = lane_sums(block, |v| {
-                let d = (v - origin) - mean;
-                let square = d * d;
-                [d, square, square * d, square * square]
-            });
+            let [a, b, c, d] = sums::<P, _, 1, 4>([block], &Powers { origin, mean });
             (a, b, c, d)
         } else {
-            let [a, b] = lane_sums(block, |v| {
-                let d = (v - origin) - mean;
-                [d, d * d]
-            });
+            let [a, b] = sums::<P, _, 1, 2>([block], &Powers { origin, mean });
             (a, b, 0.0, 0.0)
         };
         let spread = Spread {
@@ -137,79 +127,72 @@ impl<const SHAPE: bool> Kernel for BlockKernel<'_, SHAPE> {
     }
 }
 
-/// The sum of the distances from the origin, the smallest and the largest, in independent lanes.
+/// Powers of the deviation from `origin + mean`.
+struct Powers {
+    origin: f64,
+    mean: f64,
+}
+
+impl Terms<1, 2> for Powers {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [v]: [P; 1]) -> [P; 2] {
+        let d = v.sub(P::splat(self.origin)).sub(P::splat(self.mean));
+        [d, d.mul(d)]
+    }
+}
+
+impl Terms<1, 4> for Powers {
+    #[inline(always)]
+    fn of<P: Pack>(&self, [v]: [P; 1]) -> [P; 4] {
+        let d = v.sub(P::splat(self.origin)).sub(P::splat(self.mean));
+        let square = d.mul(d);
+        [d, square, square.mul(d), square.mul(square)]
+    }
+}
+
+/// The sum of the distances from the origin, the smallest and the largest.
 #[inline(always)]
-fn sum_and_range(block: &[f64], origin: f64) -> (f64, Range) {
-    // Written as comparisons: with no NaN to think of, each is one instruction.
-    let smaller = |a: f64, b: f64| if b < a { b } else { a };
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    let mut sums = [0.0; LANES];
-    let (mut low, mut high) = ([origin; LANES], [origin; LANES]);
-    let (chunks, rest) = block.as_chunks::<LANES>();
-    for chunk in chunks {
-        for lane in 0..LANES {
-            let v = chunk[lane];
-            sums[lane] += v - origin;
-            low[lane] = smaller(low[lane], v);
-            high[lane] = larger(high[lane], v);
+fn sum_and_range<P: Pack>(block: &[f64], origin: f64) -> (f64, Range) {
+    let first = P::splat(origin);
+    let mut sum = [P::splat(0.0); 2];
+    let (mut low, mut high) = ([first; 2], [first; 2]);
+    let (chunks, rest) = block.as_chunks::<PACK>();
+    let (pairs, odd) = chunks.as_chunks::<2>();
+    for pair in pairs {
+        for i in 0..2 {
+            let v = P::load(&pair[i]);
+            sum[i] = sum[i].add(v.sub(first));
+            low[i] = low[i].lower(v);
+            high[i] = high[i].upper(v);
         }
     }
-    let mut sum = total(&sums);
-    for v in rest {
-        sum += v - origin;
+    for chunk in odd {
+        let v = P::load(chunk);
+        sum[0] = sum[0].add(v.sub(first));
+        low[0] = low[0].lower(v);
+        high[0] = high[0].upper(v);
     }
-    let low = low.into_iter().chain(rest.iter().copied());
-    let high = high.into_iter().chain(rest.iter().copied());
-    let range = Range {
-        low: low.fold(origin, smaller),
-        high: high.fold(origin, larger),
+    let mut total = sum[0].add(sum[1]).total();
+    let mut range = Range {
+        low: origin,
+        high: origin,
     };
-    (sum, range)
-}
-
-/// Sums of several terms per sample, in independent lanes that are added at the end.
-#[inline(always)]
-fn lane_sums<const K: usize>(block: &[f64], terms: impl Fn(f64) -> [f64; K]) -> [f64; K] {
-    let mut lanes = [[0.0; LANES]; K];
-    let (chunks, rest) = block.as_chunks::<LANES>();
-    for chunk in chunks {
-        for lane in 0..LANES {
-            let t = terms(chunk[lane]);
-            for k in 0..K {
-                lanes[k][lane] += t[k];
-            }
-        }
-    }
-    let mut sums = [0.0; K];
-    for k in 0..K {
-        sums[k] = total(&lanes[k]);
-    }
+    let lows = low[0].lower(low[1]).lanes();
+    let highs = high[0].upper(high[1]).lanes();
     for v in rest {
-        let t = terms(*v);
-        for k in 0..K {
-            sums[k] += t[k];
-        }
+        total += v - origin;
     }
-    sums
-}
-
-/// The sum of the lanes, in pairs: the order is fixed, so every width rounds alike.
-#[inline(always)]
-fn total(lanes: &[f64; LANES]) -> f64 {
-    let mut sums = *lanes;
-    let mut width = LANES / 2;
-    while width > 0 {
-        for lane in 0..width {
-            sums[lane] += sums[lane + width];
-        }
-        width /= 2;
+    for v in lows.iter().chain(&highs).chain(rest) {
+        range.low = if *v < range.low { *v } else { range.low };
+        range.high = if *v > range.high { *v } else { range.high };
     }
-    sums[0]
+    (total, range)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Spread, Width};
+    use super::super::simd::Width;
+    use super::Spread;
 
     #[test]
     fn every_instruction_set_gives_the_same_bits() {
