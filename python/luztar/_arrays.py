@@ -40,6 +40,22 @@ def vector(name: str, values: Any, *, minimum: int = 1, finite: bool = True) -> 
     return array
 
 
+def integers(name: str, values: Any) -> np.ndarray:
+    """Return ``values`` as a contiguous int32 vector.
+
+    Raises
+    ------
+    ParameterError
+        Not whole numbers (floats are not, whatever their value), not one-dimensional, or beyond 32 bits.
+    """
+    array = _real(name, values)
+    if array.ndim != 1 or (array.dtype.kind not in "iu" and array.size):
+        raise ParameterError(f"{name} is {array.dtype} of the shape {array.shape}", name, "Give whole numbers.")
+    if array.size and not (-(2**31) <= int(array.min()) and int(array.max()) < 2**31):
+        raise ParameterError(f"{name} holds values beyond 32 bits", name, "Use a QuantileSketch.")
+    return np.require(array, np.int32, ["C", "A"])
+
+
 def rows(name: str, values: Any, columns: int | None = None) -> np.ndarray:
     """Return ``values`` as contiguous float64 rows; a vector is one column. Whether they are finite is not looked at.
 

@@ -38,6 +38,8 @@ class Line:
         n - 2; with forgetting the sum of the weights less 2.
     x_mean, y_mean : float
         The weighted means: the point the line turns about.
+    x_mean_rest : float
+        What rounding took off ``x_mean``: a time stamp of today holds a ten-millionth of a second.
     mean_se : float or None [unit of y]
         The standard error of the line at ``x_mean``.
     """
@@ -51,6 +53,7 @@ class Line:
     n: int
     degrees_of_freedom: float
     x_mean: float
+    x_mean_rest: float
     y_mean: float
     mean_se: float | None
 
@@ -69,16 +72,19 @@ class Line:
 
     def predict(self, x: Any) -> np.ndarray:
         """Return the line at x, shape (n,), from the means, so that time stamps keep their digits."""
-        return self.y_mean + self.slope * (vector("x", x, minimum=0) - self.x_mean)
+        return self.y_mean + self.slope * self._from_mean(x)
 
     def band(self, x: Any, level: float = 0.95) -> tuple[np.ndarray, np.ndarray] | None:
         """Return the lower and upper end of the line's confidence interval at x; None without degrees of freedom."""
         if self.mean_se is None or self.slope_se is None:
             return None
         middle = self.predict(x)
-        error = np.hypot(self.mean_se, self.slope_se * (vector("x", x, minimum=0) - self.x_mean))
+        error = np.hypot(self.mean_se, self.slope_se * self._from_mean(x))
         half = student_quantile(level, self.degrees_of_freedom) * error
         return middle - half, middle + half
+
+    def _from_mean(self, x: Any) -> np.ndarray:
+        return (vector("x", x, minimum=0) - self.x_mean) - self.x_mean_rest
 
     def residuals(self, x: Any, y: Any) -> np.ndarray:
         """Return y less the line, shape (n,); :func:`luztar.stats.describe` has their statistics."""
@@ -106,8 +112,8 @@ class Line:
 
 
 def _line(figures: tuple[Any, ...]) -> Line:
-    slope, intercept, (slope_se, intercept_se, mean_se, residual_std), r, n, degrees, (x_mean, y_mean) = figures
-    return Line(slope, intercept, slope_se, intercept_se, r, residual_std, n, degrees, x_mean, y_mean, mean_se)
+    slope, intercept, (slope_se, intercept_se, mean_se, residual_std), r, n, degrees, means = figures
+    return Line(slope, intercept, slope_se, intercept_se, r, residual_std, n, degrees, *means, mean_se)
 
 
 def line(x: Any, y: Any, weights: Any = None) -> Line:

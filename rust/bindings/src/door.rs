@@ -40,6 +40,18 @@ pub fn vector<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonly
     }
 }
 
+/// A vector of whole numbers of at most 32 bits.
+pub fn integers<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArray1<'py, i32>> {
+    if let Some(array) = as_it_lies(value) {
+        return Ok(array);
+    }
+    let door = value.py().import("luztar._arrays")?.getattr("integers")?;
+    door.call1((name, value))?.extract().map_err(PyErr::from)
+}
+
 /// Rows of float64 numbers, converted by `luztar._arrays` if need be.
 pub fn rows<'py>(
     name: &str,
@@ -53,7 +65,9 @@ pub fn rows<'py>(
         }
     }
     let door = value.py().import("luztar._arrays")?.getattr("rows")?;
-    Ok(door.call1((name, value, columns))?.extract()?)
+    door.call1((name, value, columns))?
+        .extract()
+        .map_err(PyErr::from)
 }
 
 /// The core's error, or, for NaN and infinities, the same with all their positions.

@@ -1,5 +1,6 @@
 //! The Python module `luztar._core`: the export list. Each binding slices, detaches, calls and maps the error.
-#![allow(missing_docs, clippy::needless_pass_by_value)]
+// Docstrings are Python's: they say array_like without backticks.
+#![allow(missing_docs, clippy::needless_pass_by_value, clippy::doc_markdown)]
 
 mod door;
 mod driven;

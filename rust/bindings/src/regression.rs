@@ -17,7 +17,7 @@ type LineTuple = (
     f64,
     u64,
     f64,
-    (f64, f64),
+    (f64, f64, f64),
 );
 
 fn line_tuple(line: core::Line) -> LineTuple {
@@ -33,7 +33,7 @@ fn line_tuple(line: core::Line) -> LineTuple {
         line.r,
         line.n,
         line.degrees_of_freedom,
-        (line.x_mean, line.y_mean),
+        (line.x_mean, line.x_mean_rest, line.y_mean),
     )
 }
 

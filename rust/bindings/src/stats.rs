@@ -403,14 +403,17 @@ impl Counts {
         Self(core::Counts::new())
     }
 
-    fn push_int16(&mut self, py: Python<'_>, x: PyReadonlyArray1<'_, i16>) -> PyResult<()> {
-        let x = x.as_slice()?;
-        Ok(door::run(py, x.len(), || self.0.push(x)).map_err(CoreError)?)
-    }
-
-    fn push_int32(&mut self, py: Python<'_>, x: PyReadonlyArray1<'_, i32>) -> PyResult<()> {
-        let x = x.as_slice()?;
-        Ok(door::run(py, x.len(), || self.0.push(x)).map_err(CoreError)?)
+    /// Count samples: array_like of whole numbers of at most 32 bits, shape (n,), n >= 0.
+    fn push(&mut self, py: Python<'_>, chunk: &Bound<'_, PyAny>) -> PyResult<()> {
+        let pushed = if let Some(x) = door::as_it_lies::<i16>(chunk) {
+            let x = x.as_slice()?;
+            door::run(py, x.len(), || self.0.push(x))
+        } else {
+            let x = door::integers("chunk", chunk)?;
+            let x = x.as_slice()?;
+            door::run(py, x.len(), || self.0.push(x))
+        };
+        Ok(pushed.map_err(CoreError)?)
     }
 
     /// Add what another object has counted.

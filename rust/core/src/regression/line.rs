@@ -33,6 +33,8 @@ pub struct Line {
     pub degrees_of_freedom: f64,
     /// The weighted mean of x, through which, with that of y, the line goes.
     pub x_mean: f64,
+    /// What rounding took off that mean: a time stamp of today holds a ten-millionth of a second.
+    pub x_mean_rest: f64,
     /// The weighted mean of y.
     pub y_mean: f64,
     /// The standard error of the line at the mean of x; None as above.
@@ -45,7 +47,10 @@ impl Line {
     pub fn stretched(self, origin: f64, step: f64) -> Self {
         let slope = self.slope / step;
         let slope_se = self.slope_se.map(|se| se / step.abs());
-        let x_mean = origin + step * self.x_mean;
+        let mut mean = Compensated::product(step, self.x_mean);
+        mean.add(step * self.x_mean_rest);
+        mean.add(origin);
+        let x_mean = mean.value;
         let mean_se = self.mean_se.zip(slope_se);
         Self {
             slope,
@@ -54,6 +59,7 @@ impl Line {
             intercept_se: mean_se.map(|(m, s)| m.hypot(s * x_mean)),
             r: self.r * step.signum(),
             x_mean,
+            x_mean_rest: mean.rest,
             ..self
         }
     }
@@ -353,6 +359,7 @@ impl Sums {
             n: self.count,
             degrees_of_freedom: n - 2.0,
             x_mean,
+            x_mean_rest: self.x_mean.rest,
             y_mean: self.y_mean.value,
             mean_se: variance.map(|v| (v / self.weight).sqrt()),
         }

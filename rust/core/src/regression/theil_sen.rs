@@ -47,9 +47,9 @@ pub fn theil_sen(x: &[f64], y: &[f64], normal_quantile: f64) -> Result<TheilSen,
     points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     // About its own middle the product below rounds least.
     let (x_middle, y_middle) = (points[n / 2].0, y[n / 2]);
-    points
-        .iter_mut()
-        .for_each(|p| *p = (p.0 - x_middle, p.1 - y_middle));
+    for p in &mut points {
+        *p = (p.0 - x_middle, p.1 - y_middle);
+    }
     let tied: u64 = points
         .chunk_by(|a, b| a.0 == b.0)
         .map(|run| pairs(run.len() as u64))

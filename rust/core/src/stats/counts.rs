@@ -36,8 +36,20 @@ impl Countable for i32 {
 /// How often every value occurred.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Counts {
-    pages: BTreeMap<i32, Vec<u64>>,
+    /// Where the page of these leading bits lies.
+    index: BTreeMap<i32, usize>,
+    pages: Vec<Vec<u64>>,
     total: u64,
+}
+
+/// The pages met last, by the last bits of their number: a signal near the border of two pages would look one up for
+/// every sample.
+struct Met([(i32, usize); 64]);
+
+impl Met {
+    fn new() -> Self {
+        Self([(i32::MAX, usize::MAX); 64]) // no value has this page: it would begin above the largest
+    }
 }
 
 impl Counts {
@@ -53,61 +65,65 @@ impl Counts {
     /// [`Error::OutOfRange`] where the values spread over more than 8192 pages of 4096 neighbours; nothing of a
     /// refused chunk is counted.
     pub fn push<T: Countable>(&mut self, x: &[T]) -> Result<(), Error> {
-        self.prepare(x.iter().map(|v| v.wide()))?;
-        let mut rest = x;
-        while let Some(first) = rest.first() {
-            // Neighbours in time are neighbours in value: the page is looked up once for a stretch of them.
-            let at = first.wide() >> PAGE_BITS;
-            let same = rest.iter().position(|v| v.wide() >> PAGE_BITS != at);
-            let (stretch, later) = rest.split_at(same.unwrap_or(rest.len()));
-            if let Some(page) = self.pages.get_mut(&at) {
-                for v in stretch {
-                    page[v.wide() as usize & (PAGE - 1)] += 1;
+        let mut met = Met::new();
+        for (i, v) in x.iter().enumerate() {
+            match self.count_of(v.wide(), &mut met) {
+                Ok(count) => *count += 1,
+                Err(error) => {
+                    for v in &x[..i] {
+                        if let Ok(count) = self.count_of(v.wide(), &mut met) {
+                            *count -= 1;
+                        }
+                    }
+                    return Err(error);
                 }
             }
-            rest = later;
         }
         self.total += x.len() as u64;
         Ok(())
     }
 
-    /// Makes the pages these values need, all or none.
-    fn prepare(&mut self, values: impl Iterator<Item = i32>) -> Result<(), Error> {
-        let mut missing: Vec<i32> = vec![];
-        let mut last = None;
-        for v in values {
-            let at = v >> PAGE_BITS;
-            if last == Some(at) {
-                continue;
-            }
-            last = Some(at);
-            if !self.pages.contains_key(&at) && !missing.contains(&at) {
-                if self.pages.len() + missing.len() == MOST_PAGES {
-                    return Err(Error::OutOfRange {
-                        name: "x",
-                        value: f64::from(v),
-                        interval: format!(
-                            "one of {MOST_PAGES} pages of {PAGE} neighbours; use a QuantileSketch"
-                        ),
-                    });
-                }
-                missing.push(at);
-            }
+    /// The count of a value; its page is made if need be.
+    #[inline]
+    fn count_of(&mut self, value: i32, met: &mut Met) -> Result<&mut u64, Error> {
+        let at = value >> PAGE_BITS;
+        let slot = &mut met.0[at as usize & 63];
+        if slot.0 != at {
+            *slot = (at, self.page(at)?);
         }
-        for at in missing {
-            self.pages.insert(at, vec![0; PAGE]);
+        Ok(&mut self.pages[slot.1][value as usize & (PAGE - 1)])
+    }
+
+    #[cold]
+    fn page(&mut self, at: i32) -> Result<usize, Error> {
+        if let Some(found) = self.index.get(&at) {
+            return Ok(*found);
         }
-        Ok(())
+        if self.pages.len() == MOST_PAGES {
+            return Err(Error::OutOfRange {
+                name: "x",
+                value: f64::from(at << PAGE_BITS),
+                interval: format!(
+                    "one of {MOST_PAGES} pages of {PAGE} neighbours; use a QuantileSketch"
+                ),
+            });
+        }
+        self.pages.push(vec![0; PAGE]);
+        self.index.insert(at, self.pages.len() - 1);
+        Ok(self.pages.len() - 1)
     }
 
     /// Adds what another object has counted.
     ///
     /// # Errors
-    /// As [`Self::push`].
+    /// As [`Self::push`]; then nothing was added.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
-        self.prepare(other.pages.keys().map(|at| at << PAGE_BITS))?;
-        for (at, theirs) in &other.pages {
-            for (mine, more) in self.pages.entry(*at).or_default().iter_mut().zip(theirs) {
+        for at in other.index.keys() {
+            self.page(*at)?;
+        }
+        for (at, theirs) in &other.index {
+            let own = self.page(*at)?;
+            for (mine, more) in self.pages[own].iter_mut().zip(&other.pages[*theirs]) {
                 *mine += more;
             }
         }
@@ -122,9 +138,10 @@ impl Counts {
     }
 
     /// The values that occurred, in order, and how often.
+    #[must_use]
     pub fn values(&self) -> impl DoubleEndedIterator<Item = (i32, u64)> {
-        self.pages.iter().flat_map(|(at, page)| {
-            let numbered = page.iter().enumerate();
+        self.index.iter().flat_map(|(at, page)| {
+            let numbered = self.pages[*page].iter().enumerate();
             numbered
                 .filter(|(_, n)| **n > 0)
                 .map(move |(i, n)| ((at << PAGE_BITS) + i as i32, *n))
@@ -215,7 +232,7 @@ impl Counts {
                 got: integers.len(),
             });
         }
-        let mut counts = Self::new();
+        let (mut counts, mut met) = (Self::new(), Met::new());
         for [shifted, n] in pairs {
             let value = i64::from(i32::MIN).saturating_add_unsigned(*shifted);
             let value = i32::try_from(value).map_err(|_| Error::OutOfRange {
@@ -223,10 +240,7 @@ impl Counts {
                 value: value as f64,
                 interval: "32 bits".into(),
             })?;
-            counts.prepare(std::iter::once(value))?;
-            if let Some(page) = counts.pages.get_mut(&(value >> PAGE_BITS)) {
-                page[value as usize & (PAGE - 1)] = *n;
-            }
+            *counts.count_of(value, &mut met)? = *n;
             counts.total = counts.total.saturating_add(*n);
         }
         Ok(counts)

@@ -8,6 +8,9 @@ use crate::error::{Error, LARGEST, require_finite};
 /// The largest magnitude where third and fourth powers are summed as well: its fourth power is [`LARGEST`]'s square.
 pub const LARGEST_FOR_SHAPE: f64 = 1e75;
 
+/// Below this variance the fourth powers of the deviations run out of exponents.
+const LEAST_VARIANCE: f64 = 1e-150;
+
 /// An extreme value and where it was first met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
@@ -532,7 +535,7 @@ impl Figures {
         Some(self.spread.mean.value.hypot(variance.sqrt()))
     }
 
-    /// The population skewness `m3 / m2^1.5`; None where nothing varies or it was not asked for.
+    /// The population skewness `m3 / m2^1.5`; None if not asked for or of a deviation below 1e-75.
     #[must_use]
     pub fn skew(&self) -> Option<f64> {
         let variance = self.varying()?;
@@ -550,7 +553,7 @@ impl Figures {
 
     fn varying(&self) -> Option<f64> {
         self.variance_population()
-            .filter(|v| self.shape && *v > 0.0)
+            .filter(|v| self.shape && *v > LEAST_VARIANCE)
     }
 }
 
