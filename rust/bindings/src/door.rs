@@ -2,7 +2,7 @@
 
 use numpy::{
     Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,6 +23,10 @@ pub fn run<R: Send>(py: Python<'_>, samples: usize, work: impl FnOnce() -> R + S
 
 /// The array itself if it is contiguous, aligned and of this type.
 pub fn as_it_lies<'py, T: Element>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArray1<'py, T>> {
+    // A subclass may mean more than its numbers: a masked array comes in by the Python door, which refuses it.
+    if !value.is_exact_instance_of::<PyUntypedArray>() {
+        return None;
+    }
     let array = value.cast::<PyArray1<T>>().ok()?;
     let lies_well = array.data().is_aligned() && array.is_c_contiguous();
     if lies_well {
@@ -58,7 +62,9 @@ pub fn rows<'py>(
     value: &Bound<'py, PyAny>,
     columns: Option<usize>,
 ) -> PyResult<PyReadonlyArray2<'py, f64>> {
-    if let Ok(array) = value.cast::<PyArray2<f64>>() {
+    if value.is_exact_instance_of::<PyUntypedArray>()
+        && let Ok(array) = value.cast::<PyArray2<f64>>()
+    {
         let fits = columns.is_none_or(|columns| array.shape()[1] == columns);
         if fits && array.data().is_aligned() && array.is_c_contiguous() {
             return Ok(array.try_readonly()?);

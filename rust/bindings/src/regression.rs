@@ -297,14 +297,17 @@ fn polynomial_tuple(py: Python<'_>, fit: core::PolynomialFit) -> PolynomialTuple
 #[pyfunction]
 pub fn fit_polynomial<'py>(
     py: Python<'py>,
-    x: PyReadonlyArray1<'py, f64>,
-    y: PyReadonlyArray1<'py, f64>,
+    x: &Bound<'py, PyAny>,
+    y: &Bound<'py, PyAny>,
     weights: Option<PyReadonlyArray1<'py, f64>>,
     degree: usize,
 ) -> PyResult<PolynomialTuple<'py>> {
-    let (x, y, weights) = (x.as_slice()?, y.as_slice()?, optional(weights.as_ref())?);
-    let fit = door::run(py, x.len(), || core::fit_polynomial(x, y, weights, degree))
-        .map_err(CoreError)?;
+    let (xs, ys) = (door::vector("x", x)?, door::vector("y", y)?);
+    let (xs, ys, weights) = (xs.as_slice()?, ys.as_slice()?, optional(weights.as_ref())?);
+    let fit = door::run(py, xs.len(), || {
+        core::fit_polynomial(xs, ys, weights, degree)
+    });
+    let fit = fit.map_err(|e| door::explained_of(e, &[("x", x), ("y", y)]))?;
     Ok(polynomial_tuple(py, fit))
 }
 

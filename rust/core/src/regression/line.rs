@@ -251,6 +251,14 @@ impl LineSums {
             value: means[2 * i],
             rest: means[2 * i + 1],
         };
+        // Beyond this a count of points is no longer exact as a double, and no stream is as long.
+        if count > 1 << 53 {
+            return Err(Error::OutOfRange {
+                name: "state",
+                value: count as f64,
+                interval: "[0, 2^53]".into(),
+            });
+        }
         let mut sums = Self::with_forgetting(*forgetting)?;
         sums.sums = Sums {
             count,

@@ -63,12 +63,11 @@ pub fn theil_sen(x: &[f64], y: &[f64], normal_quantile: f64) -> Result<TheilSen,
     }
     let half = normal_quantile * kendall_deviation(x, y) / 2.0;
     let middle = total as f64 / 2.0;
-    // As Sen: ranks from one, cut at the first and the last.
-    let low = (middle - half)
-        .round_ties_even()
-        .clamp(0.0, (total - 1) as f64) as u64;
-    let high = ((middle + half).round_ties_even() - 1.0).clamp(0.0, (total - 1) as f64) as u64;
-    let ranks = [(total - 1) / 2, total / 2, low.min(high), high.max(low)];
+    // Sen's M1-th and (M2 + 1)-th slope, counted from one, cut at the first and the last.
+    let cut = |rank: f64| rank.clamp(0.0, (total - 1) as f64) as u64;
+    let low = cut((middle - half).round_ties_even() - 1.0);
+    let high = cut((middle + half).round_ties_even());
+    let ranks = [(total - 1) / 2, total / 2, low, high];
     let [a, b, slope_low, slope_high] = if n <= ALL_PAIRS {
         by_selection(&points, ranks)
     } else {

@@ -201,10 +201,10 @@ impl Counts {
             || squares as f64 / n as f64 - (sum as f64 / n as f64).powi(2),
             |exact| exact as f64 / (n as f64 * n as f64),
         );
-        // The whole part is exact; only the fraction rounds.
-        let (whole, part) = (sum.div_euclid(n), sum.rem_euclid(n));
+        // Towards zero, so that the fraction is rounded before nothing but a part of the same sign is added.
+        let all = origin * n + sum;
         Some((
-            (origin + whole) as f64 + part as f64 / n as f64,
+            (all / n) as f64 + (all % n) as f64 / n as f64,
             variance.max(0.0).sqrt(),
         ))
     }
