@@ -16,7 +16,7 @@ class QuantileSketch(Stream, _core.QuantileSketch):
     Parameters
     ----------
     relative_error : float
-        7.7e-6 to 0.25. What holds is the next power of two below (``.relative_error``).
+        6.2e-5 to 0.25. What holds is the next power of two below (``.relative_error``).
 
     Notes
     -----
@@ -24,7 +24,7 @@ class QuantileSketch(Stream, _core.QuantileSketch):
     (``test_sketch_is_within_its_bound_of_the_exact_rank``); magnitudes below 2.3e-308 count as zero. Merging adds
     counts: parts merged in any order are the sketch of the whole, exactly. Buckets are the leading bits of the number,
     so a push costs neither a logarithm nor a search; one that meets a magnitude outside 1e-9 to 1e9 for the first time
-    may allocate. The guarantee is that of [1]_. Memory at 1 %: 61 KiB.
+    may allocate. The guarantee is that of [1]_. Memory at 1 %: 0.16 MiB.
 
     References
     ----------

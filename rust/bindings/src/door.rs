@@ -53,7 +53,7 @@ pub fn integers<'py>(
         return Ok(array);
     }
     let door = value.py().import("luztar._arrays")?.getattr("integers")?;
-    door.call1((name, value))?.extract().map_err(PyErr::from)
+    door.call1((name, value))?.extract()
 }
 
 /// Rows of float64 numbers, converted by `luztar._arrays` if need be.
@@ -71,9 +71,7 @@ pub fn rows<'py>(
         }
     }
     let door = value.py().import("luztar._arrays")?.getattr("rows")?;
-    door.call1((name, value, columns))?
-        .extract()
-        .map_err(PyErr::from)
+    door.call1((name, value, columns))?.extract()
 }
 
 /// The core's error, or, for NaN and infinities, the same with all their positions.

@@ -432,17 +432,8 @@ const NOT_FINITE: Range = Range {
 
 /// The range of a part, not a number if the part holds one that is not.
 fn range_of(part: &[f64]) -> Range {
-    let mut range = Range {
-        low: part[0],
-        high: part[0],
-    };
-    let mut holds_nan = false;
-    for v in part {
-        holds_nan |= v.is_nan();
-        range.low = if *v < range.low { *v } else { range.low };
-        range.high = if *v > range.high { *v } else { range.high };
-    }
-    if holds_nan { NOT_FINITE } else { range }
+    let (sum, range) = Range::of(part);
+    if sum.is_finite() { range } else { NOT_FINITE }
 }
 
 /// Says which sample of the chunk cannot be taken.

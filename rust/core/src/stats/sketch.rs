@@ -12,22 +12,24 @@ use crate::error::{Error, require_finite};
 /// Bits of the mantissa of a double.
 const MANTISSA: u32 = 52;
 
-/// Magnitudes that have their buckets from the start; outside, the tables grow when such a sample is first met.
+/// Magnitudes that have their buckets from the start; outside, a row is made when such a sample is first met.
 const PREPARED: (f64, f64) = (1e-9, 1e9);
 
-/// The finest and coarsest accuracies: 2^-17 asks for 2^16 buckets a power of two.
-const ACCURACIES: (f64, f64) = (7.7e-6, 0.25);
+/// The finest and coarsest accuracies: 2^-14 takes 2^13 buckets, 64 KiB, a power of two.
+const ACCURACIES: (f64, f64) = (6.2e-5, 0.25);
 
-/// Counts of magnitudes of one sign.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// Counts of magnitudes of one sign: for every power of two a row of buckets, empty until it is met.
+#[derive(Debug, Clone)]
 struct Buckets {
-    /// The key of the first bucket.
-    first: u64,
-    counts: Vec<u64>,
+    bits: u32,
+    rows: Vec<Vec<u64>>,
 }
 
+/// Exponents of a double, those of subnormal numbers and of infinity included.
+const EXPONENTS: usize = 2048;
+
 /// Quantiles of everything pushed so far.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct QuantileSketch {
     /// Each power of two has `2^bits` buckets.
     bits: u32,
@@ -41,41 +43,34 @@ pub struct QuantileSketch {
 
 impl Buckets {
     fn prepared(bits: u32) -> Self {
-        let first = key(PREPARED.0, bits);
-        let len = key(PREPARED.1, bits) - first + 1;
-        Self {
-            first,
-            counts: vec![0; len as usize],
+        let mut buckets = Self {
+            bits,
+            rows: vec![vec![]; EXPONENTS],
+        };
+        let (low, high) = PREPARED;
+        for row in key(low, 0)..=key(high, 0) {
+            buckets.rows[row as usize] = vec![0; 1 << bits];
         }
+        buckets
     }
 
     #[inline]
     fn add(&mut self, key: u64, n: u64) {
-        if let Some(count) = self.counts.get_mut(key.wrapping_sub(self.first) as usize) {
-            *count += n;
-        } else {
-            self.grow(key);
-            self.counts[(key - self.first) as usize] += n;
+        let (row, column) = ((key >> self.bits) as usize, key & ((1 << self.bits) - 1));
+        if self.rows[row].is_empty() {
+            self.rows[row] = vec![0; 1 << self.bits];
         }
-    }
-
-    #[cold]
-    fn grow(&mut self, key: u64) {
-        if key < self.first {
-            let more = (self.first - key) as usize;
-            self.counts.splice(0..0, std::iter::repeat_n(0, more));
-            self.first = key;
-        } else {
-            self.counts.resize((key - self.first) as usize + 1, 0);
-        }
+        self.rows[row][column as usize] += n;
     }
 
     fn filled(&self) -> impl DoubleEndedIterator<Item = (u64, u64)> {
-        let first = self.first;
-        let numbered = self.counts.iter().enumerate();
-        numbered
-            .filter(|(_, n)| **n > 0)
-            .map(move |(i, n)| (first + i as u64, *n))
+        self.rows.iter().enumerate().flat_map(move |(row, counts)| {
+            let first = (row as u64) << self.bits;
+            let numbered = counts.iter().enumerate();
+            numbered
+                .filter(|(_, n)| **n > 0)
+                .map(move |(i, n)| (first + i as u64, *n))
+        })
     }
 }
 
@@ -241,7 +236,7 @@ impl QuantileSketch {
             return Err(foreign(integers.len()));
         };
         let (pairs, odd) = buckets.as_chunks::<2>();
-        if !odd.is_empty() || negative as usize > pairs.len() || !(1..=16).contains(&bits) {
+        if !odd.is_empty() || negative as usize > pairs.len() || !(1..=13).contains(&bits) {
             return Err(foreign(integers.len()));
         }
         let mut sketch = Self::new(0.5_f64.powi(bits as i32 + 1))?;

@@ -32,6 +32,24 @@ pub(crate) struct Range {
     pub(crate) high: f64,
 }
 
+impl Range {
+    /// The sum of the distances from the first sample, which is not finite if one of the samples is not, and the range.
+    pub(crate) fn of(part: &[f64]) -> (f64, Self) {
+        simd::run(RangeKernel(part))
+    }
+}
+
+struct RangeKernel<'a>(&'a [f64]);
+
+impl Kernel for RangeKernel<'_> {
+    type Output = (f64, Range);
+
+    #[inline(always)]
+    fn run<P: Pack>(self) -> Self::Output {
+        sum_and_range::<P>(self.0, self.0[0])
+    }
+}
+
 impl Spread {
     /// One non-empty block, and its range; with NaN or infinities in it the mean is not finite.
     pub(crate) fn of_block(block: &[f64], shape: bool) -> (Self, Range) {
