@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, dataclass
@@ -247,6 +248,37 @@ def test_two_threads_on_two_objects_give_what_one_gives() -> None:
     for t in threads:
         t.join()
     assert all(m.state() == stats.Moments(x, shape=True).state() for m in made)
+
+
+def test_a_long_push_lets_other_threads_run() -> None:
+    x, m = np.zeros(4_000_000), stats.Moments()
+    refused: list[bool] = []
+    interval = sys.getswitchinterval()
+    # nobody takes the interpreter lock away within this time: another thread runs only if the push gives it up
+    sys.setswitchinterval(10.0)
+    try:
+        for _ in range(50):
+            gate = threading.Lock()
+            gate.acquire()
+
+            def other(gate: threading.Lock = gate) -> None:
+                gate.acquire()
+                try:
+                    m.push(1.0)
+                except RuntimeError:
+                    refused.append(True)
+
+            thread = threading.Thread(target=other)
+            thread.start()
+            gate.release()
+            m.push(x)
+            thread.join()
+            if refused:
+                break
+    finally:
+        sys.setswitchinterval(interval)
+    # the other thread met the object in the middle of the push, and was told so
+    assert refused
 
 
 def test_results_are_frozen_and_print_themselves() -> None:

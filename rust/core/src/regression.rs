@@ -10,6 +10,7 @@ mod refine;
 pub mod rolling_line;
 pub mod theil_sen;
 mod triangle;
+mod twofold;
 
 pub use line::{Line, LineSums, fit_line};
 pub use linear::{LinearFit, LinearSums, fit_linear};

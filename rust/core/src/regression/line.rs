@@ -173,10 +173,9 @@ impl LineSums {
         let mut number = [0.0; BLOCK];
         for (at, block) in y.chunks(BLOCK).enumerate() {
             let first = next.sums.count;
-            number
-                .iter_mut()
-                .enumerate()
-                .for_each(|(i, x)| *x = (first + i as u64) as f64);
+            for (i, x) in number[..block.len()].iter_mut().enumerate() {
+                *x = (first + i as u64) as f64;
+            }
             next.push(&number[..block.len()], block)
                 .map_err(|e| e.moved(at * BLOCK))?;
         }

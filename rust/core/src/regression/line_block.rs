@@ -189,3 +189,24 @@ impl Terms<3, 1> for Squares {
         [w.mul(square)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Plain, Weighted};
+    use crate::stats::simd::{Width, run_at};
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        for n in [1, 2, 15, 16, 17, 100, 1023, 1024] {
+            let x: Vec<f64> = (0..n).map(|i| 1e6 + (f64::from(i) * 0.37).sin()).collect();
+            let y: Vec<f64> = x.iter().map(|v| (v * 1.7).cos()).collect();
+            let w: Vec<f64> = y.iter().map(|v| 1.0 + v * v).collect();
+            let plain = run_at(Width::Baseline, Plain(&x, &y));
+            let weighted = run_at(Width::Baseline, Weighted(&x, &y, &w));
+            for width in [Width::Avx2, Width::Avx512] {
+                assert_eq!(plain, run_at(width, Plain(&x, &y)));
+                assert_eq!(weighted, run_at(width, Weighted(&x, &y, &w)));
+            }
+        }
+    }
+}

@@ -3,10 +3,12 @@
 //! With an intercept, every column is taken relative to its first value, so that large offsets (a year, a time stamp)
 //! cost no digits; the coefficients are put back at the end.
 
-use super::refine::refine;
+use super::refine::{Design, refine};
 use super::triangle::Triangle;
+use super::twofold::Twofold;
 use crate::error::{Error, require_finite, require_moderate};
 use crate::stats::compensated::Compensated;
+use crate::stats::simd::{PACK, Pack};
 
 /// A diagonal entry this much smaller than its column says that the column is a combination of those before it:
 /// rounding leaves some ten epsilons.
@@ -356,19 +358,42 @@ pub fn fit_linear(
     let mut sums = LinearSums::new(predictors, intercept, 1.0)?;
     sums.push(x, y, weights)?;
     let mut solved = sums.solve()?;
-    let constant = usize::from(intercept);
-    refine(&mut solved, y.len(), weights, |i, row| {
-        row[..constant].fill(Compensated::from(1.0));
-        let values = &x[i * predictors..(i + 1) * predictors];
-        for (entry, (v, o)) in row[constant..]
-            .iter_mut()
-            .zip(values.iter().zip(&sums.origin))
-        {
-            *entry = Compensated::sum(*v, -o);
-        }
-        Compensated::sum(y[i], -sums.origin[predictors])
-    });
+    let rows = Rows {
+        x,
+        y,
+        predictors,
+        intercept,
+        origin: &sums.origin,
+    };
+    refine(&mut solved, weights, &rows);
     Ok(sums.figures(&solved))
+}
+
+/// Rows relative to the first one, the constant in front.
+struct Rows<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    predictors: usize,
+    intercept: bool,
+    origin: &'a [f64],
+}
+
+impl Design for Rows<'_> {
+    fn rows(&self) -> usize {
+        self.y.len()
+    }
+
+    #[inline(always)]
+    fn look<P: Pack>(&self, rows: [usize; PACK], entries: &mut [Twofold<P>]) -> Twofold<P> {
+        let constant = usize::from(self.intercept);
+        entries[..constant].fill(Twofold::from(P::splat(1.0)));
+        for (j, entry) in entries[constant..].iter_mut().enumerate() {
+            let column = P::load(&rows.map(|i| self.x[i * self.predictors + j]));
+            *entry = Twofold::difference(column, P::splat(self.origin[j]));
+        }
+        let y = P::load(&rows.map(|i| self.y[i]));
+        Twofold::difference(y, P::splat(self.origin[self.predictors]))
+    }
 }
 
 /// A solution with its factor.

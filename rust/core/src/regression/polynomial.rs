@@ -4,9 +4,11 @@
 //! orthogonal. The way back to powers is computed in twice the precision.
 
 use super::linear::{LinearSums, Solved};
-use super::refine::refine;
+use super::refine::{Design, refine};
+use super::twofold::Twofold;
 use crate::error::{Error, require_moderate, require_same_length};
 use crate::stats::compensated::Compensated;
+use crate::stats::simd::{PACK, Pack};
 
 /// The highest degree.
 pub const HIGHEST: usize = 30;
@@ -279,19 +281,45 @@ pub fn fit_polynomial(
     sums.push(x, y, weights)?;
     let mut solved = sums.solve()?;
     let (centre, half) = sums.mapping();
-    let (inverse, y_origin) = (reciprocal(half), sums.linear.y_origin());
-    refine(&mut solved, x.len(), weights, |i, row| {
-        let u = Compensated::sum(x[i], -centre).times(inverse);
-        let twice = u.times(Compensated::from(2.0));
-        let (mut before, mut now) = (Compensated::from(1.0), u);
-        row[0] = before;
-        for entry in &mut row[1..] {
-            *entry = now;
-            (before, now) = (now, twice.times(now).plus(-before));
-        }
-        Compensated::sum(y[i], -y_origin)
-    });
+    let points = Points {
+        x,
+        y,
+        centre,
+        inverse: reciprocal(half),
+        y_origin: sums.linear.y_origin(),
+    };
+    refine(&mut solved, weights, &points);
     Ok(sums.figures(&solved))
+}
+
+/// Chebyshev polynomials of the mapped points.
+struct Points<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    centre: f64,
+    inverse: Compensated,
+    y_origin: f64,
+}
+
+impl Design for Points<'_> {
+    fn rows(&self) -> usize {
+        self.y.len()
+    }
+
+    #[inline(always)]
+    fn look<P: Pack>(&self, rows: [usize; PACK], entries: &mut [Twofold<P>]) -> Twofold<P> {
+        let x = P::load(&rows.map(|i| self.x[i]));
+        let u = Twofold::difference(x, P::splat(self.centre)).times(Twofold::splat(self.inverse));
+        let twice = u.plus(u);
+        let (mut before, mut now) = (Twofold::from(P::splat(1.0)), u);
+        entries[0] = before;
+        for entry in &mut entries[1..] {
+            *entry = now;
+            (before, now) = (now, twice.times(now).minus(before));
+        }
+        let y = P::load(&rows.map(|i| self.y[i]));
+        Twofold::difference(y, P::splat(self.y_origin))
+    }
 }
 
 /// 1/h in twice the precision: one Newton step.

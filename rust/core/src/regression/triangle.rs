@@ -186,3 +186,33 @@ fn subtract<P: Pack>(column: &mut [f64], v: &[f64], s: f64) {
         *c -= s * v;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ROWS, Reflect};
+    use crate::stats::simd::{Width, run_at};
+
+    fn factor(width: Width) -> Vec<f64> {
+        let mut factor = vec![0.0; 9];
+        for block in 0..3 {
+            let mut rows: Vec<f64> = (0..3 * ROWS)
+                .map(|i| ((i + 1000 * block) as f64 * 0.7).sin())
+                .collect();
+            let reflect = Reflect {
+                width: 3,
+                factor: &mut factor,
+                rows: &mut rows,
+                count: ROWS - 11 * block,
+            };
+            run_at(width, reflect);
+        }
+        factor
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let baseline = factor(Width::Baseline);
+        assert_eq!(baseline, factor(Width::Avx2));
+        assert_eq!(baseline, factor(Width::Avx512));
+    }
+}

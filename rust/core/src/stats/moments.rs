@@ -432,6 +432,13 @@ const NOT_FINITE: Range = Range {
 
 /// The range of a part, not a number if the part holds one that is not.
 fn range_of(part: &[f64]) -> Range {
+    if let [only] = part {
+        // one sample at a time is a way of its own: nothing to be compared
+        return Range {
+            low: *only,
+            high: *only,
+        };
+    }
     let (sum, range) = Range::of(part);
     if sum.is_finite() { range } else { NOT_FINITE }
 }
