@@ -5,7 +5,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
 
-use luztar::regression::{LineSums, LinearSums, PolynomialSums, Recursive, RollingLine};
+use luztar::regression::{
+    LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, RollingPolynomial,
+};
 use luztar::stats::{Counts, Moments, QuantileSketch, Rolling, Settings};
 
 thread_local! {
@@ -99,6 +101,7 @@ fn pushing_points_allocates_nothing() {
     let mut rolling = RollingLine::new(300).expect("in range");
     let mut linear = LinearSums::new(2, true, 0.999).expect("in range");
     let mut polynomial = PolynomialSums::new(3, (-3.0, 3.0), 1.0).expect("in range");
+    let mut last = RollingPolynomial::new(2, 300).expect("in range");
     let mut recursive = Recursive::new(&[0.0, 0.0], 1e3, 0.999).expect("in range");
     let (mut errors, mut coefficients) = ([0.0; 10], [0.0; 2]);
     let found = allocations(|| {
@@ -106,6 +109,7 @@ fn pushing_points_allocates_nothing() {
             let y = &chunk[..10];
             line.push(y, &chunk[10..]).expect("finite");
             rolling.push(y, &chunk[10..]).expect("finite");
+            last.push(y, &chunk[10..]).expect("finite");
             linear.push(chunk, y, None).expect("finite");
             polynomial.push(y, &chunk[10..], None).expect("finite");
             recursive.push(chunk, y, Some(&mut errors)).expect("finite");

@@ -129,6 +129,18 @@ def test_forgetting_is_a_weight_that_falls_with_age() -> None:
         assert sums.fit().coefficients == pytest.approx(direct.coefficients, rel=1e-9)
 
 
+@given(seed=st.integers(0, 99), window=st.integers(5, 200), extra=st.integers(0, 400), chunk=st.integers(1, 90))
+def test_rolling_polynomial_is_the_one_of_the_last_points(seed: int, window: int, extra: int, chunk: int) -> None:
+    x, y = points(window + extra, seed)
+    rolling = regression.RollingPolynomial(3, window)
+    for start in range(0, x.size, chunk):
+        rolling.push(x[start : start + chunk], y[start : start + chunk])
+    found, direct = rolling.fit(), regression.polynomial(x[-window:], y[-window:], 3)
+    assert found.n == window
+    # the same points in another order, both corrected: the last places, times the cancellation of the powers
+    assert found.coefficients == pytest.approx(direct.coefficients, rel=1e-12)
+
+
 def test_too_few_distinct_points_are_refused_in_words() -> None:
     with pytest.raises(ParameterError, match="at least 3 distinct x"):
         regression.polynomial([1.0, 2.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], 2)

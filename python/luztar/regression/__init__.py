@@ -11,6 +11,7 @@ from .linear import LinearSums as LinearSums
 from .linear import linear as linear
 from .polynomial import PolynomialFit as PolynomialFit
 from .polynomial import PolynomialSums as PolynomialSums
+from .polynomial import RollingPolynomial as RollingPolynomial
 from .polynomial import polynomial as polynomial
 from .recursive import RecursiveLeastSquares as RecursiveLeastSquares
 from .robust import HuberFit as HuberFit

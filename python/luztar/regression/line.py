@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._arrays import number, vector, whole_number
+from .._printed import Printed, known, with_error
 from .._stream import Stream
 from ..errors import ParameterError
 from .intervals import around, student_quantile
@@ -17,7 +18,7 @@ _LONGEST = 10_000_000
 
 
 @dataclass(frozen=True)
-class Line:
+class Line(Printed):
     """The least-squares line ``y = intercept + slope * x``.
 
     Attributes
@@ -97,18 +98,14 @@ class Line:
         """Return the fields as plain JSON values."""
         return asdict(self)
 
-    def __str__(self) -> str:
-        def with_error(value: float, error: float | None) -> str:
-            return f"{value:.9g}" + (f" +- {error:.3g}" if error is not None else "")
-
-        rows = [
+    def _rows(self) -> list[tuple[str, str]]:
+        return [
             ("slope", with_error(self.slope, self.slope_se)),
             ("intercept", with_error(self.intercept, self.intercept_se)),
             ("r squared", f"{self.r_squared:.6g}"),
-            ("residual std", "unknown" if self.residual_std is None else f"{self.residual_std:.6g}"),
+            ("residual std", known(self.residual_std)),
             ("points", f"{self.n}"),
         ]
-        return "\n".join(f"{name:<14}{value}" for name, value in rows)
 
 
 def _line(figures: tuple[Any, ...]) -> Line:

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._arrays import number, rows, vector, whole_number
+from .._printed import Printed, known, with_error
 from .._stream import Stream
 from .intervals import student_quantile
 
@@ -16,7 +17,7 @@ _MOST_PREDICTORS = 512
 
 
 @dataclass(frozen=True, eq=False)
-class LinearFit:
+class LinearFit(Printed):
     """The least-squares fit ``y = b0 + b1 x1 + ... + bp xp``.
 
     Attributes
@@ -66,14 +67,14 @@ class LinearFit:
         """Return the fields as plain JSON values."""
         return {key: _plain(getattr(self, key)) for key in self.__dataclass_fields__}
 
-    def __str__(self) -> str:
+    def _rows(self) -> list[tuple[str, str]]:
         errors = self.standard_errors if self.standard_errors is not None else [None] * len(self.coefficients)
-        lines = [
-            f"b{i + (not self.intercept):<13}{b:.9g}" + (f" +- {e:.3g}" if e is not None else "")
-            for i, (b, e) in enumerate(zip(self.coefficients, errors, strict=True))
+        pairs = enumerate(zip(self.coefficients, errors, strict=True))
+        return [
+            *((f"b{i + (not self.intercept)}", with_error(b, e)) for i, (b, e) in pairs),
+            ("residual std", known(self.residual_std)),
+            ("r squared", f"{self.r_squared:.6g}"),
         ]
-        spread = "unknown" if self.residual_std is None else f"{self.residual_std:.6g}"
-        return "\n".join([*lines, f"{'residual std':<14}{spread}", f"{'r squared':<14}{self.r_squared:.6g}"])
 
 
 def linear(x: Any, y: Any, weights: Any = None, *, intercept: bool = True) -> LinearFit:

@@ -9,15 +9,17 @@ import numpy as np
 
 from .. import _core
 from .._arrays import number, vector, whole_number
+from .._printed import Printed, known, with_error
 from .._stream import Stream
 from ..errors import ParameterError
 from .intervals import student_quantile
 
 _HIGHEST = 30
+_LONGEST = 10_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class PolynomialFit:
+class PolynomialFit(Printed):
     """The least-squares polynomial.
 
     Attributes
@@ -79,14 +81,14 @@ class PolynomialFit:
         values = {key: getattr(self, key) for key in self.__dataclass_fields__}
         return {key: v.tolist() if isinstance(v, np.ndarray) else v for key, v in values.items()}
 
-    def __str__(self) -> str:
+    def _rows(self) -> list[tuple[str, str]]:
         errors = self.standard_errors if self.standard_errors is not None else [None] * len(self.coefficients)
-        lines = [
-            f"x^{i:<12}{b:.9g}" + (f" +- {e:.3g}" if e is not None else "")
-            for i, (b, e) in enumerate(zip(self.coefficients, errors, strict=True))
+        pairs = enumerate(zip(self.coefficients, errors, strict=True))
+        return [
+            *((f"x^{i}", with_error(b, e)) for i, (b, e) in pairs),
+            ("residual std", known(self.residual_std)),
+            ("r squared", f"{self.r_squared:.6g}"),
         ]
-        spread = "unknown" if self.residual_std is None else f"{self.residual_std:.6g}"
-        return "\n".join([*lines, f"{'residual std':<14}{spread}", f"{'r squared':<14}{self.r_squared:.6g}"])
 
 
 def polynomial(x: Any, y: Any, degree: int, weights: Any = None) -> PolynomialFit:
@@ -164,6 +166,43 @@ class PolynomialSums(Stream, _core.PolynomialSums):
 
     def __repr__(self) -> str:
         return f"<luztar.regression.PolynomialSums: {self.count} points, degree {self.degree}>"
+
+
+class RollingPolynomial(Stream, _core.RollingPolynomial):
+    """A polynomial through the last ``window`` points, fitted from the points themselves when it is asked for.
+
+    Parameters
+    ----------
+    degree : int
+        0 to 30.
+    window : int
+        Points, more than the degree, up to 10,000,000.
+
+    Notes
+    -----
+    A push only stores; :meth:`fit` costs what :func:`polynomial` costs on as many points. For a straight line that is
+    asked for after every sample use :class:`RollingLine`.
+
+    Examples
+    --------
+    >>> r = RollingPolynomial(2, 4)
+    >>> r.push([0.0, 1.0, 2.0, 3.0, 4.0], [1e9, 2.0, 5.0, 10.0, 17.0])
+    >>> r.fit().coefficients.round(9).tolist()
+    [1.0, 0.0, 1.0]
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, degree: int = 1, window: int = 2) -> RollingPolynomial:  # noqa: D102
+        degree = whole_number("degree", degree, 0, _HIGHEST)
+        return super().__new__(cls, degree, whole_number("window", window, degree + 1, _LONGEST))
+
+    def fit(self) -> PolynomialFit:
+        """Return the polynomial; raises ParameterError for too few distinct x."""
+        return _fit(self.figures())
+
+    def __repr__(self) -> str:
+        return f"<luztar.regression.RollingPolynomial: {self.count} of {self.window} points, degree {self.degree}>"
 
 
 def _fit(figures: tuple[Any, ...]) -> PolynomialFit:

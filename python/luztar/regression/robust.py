@@ -7,12 +7,13 @@ from typing import Any
 
 from .. import _core
 from .._arrays import number, vector
+from .._printed import Printed
 from .intervals import normal_quantile
 from .linear import LinearFit
 
 
 @dataclass(frozen=True)
-class TheilSenLine:
+class TheilSenLine(Printed):
     """The line with the median slope of all pairs of points.
 
     Attributes
@@ -37,6 +38,13 @@ class TheilSenLine:
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as plain JSON values."""
         return asdict(self)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        return [
+            ("slope", f"{self.slope:.9g}, {100 * self.level:g} % from {self.slope_low:.6g} to {self.slope_high:.6g}"),
+            ("intercept", f"{self.intercept:.9g}"),
+            ("points", f"{self.n}"),
+        ]
 
 
 def theil_sen(x: Any, y: Any, *, level: float = 0.95) -> TheilSenLine:
@@ -69,7 +77,7 @@ def theil_sen(x: Any, y: Any, *, level: float = 0.95) -> TheilSenLine:
 
 
 @dataclass(frozen=True, eq=False)
-class HuberFit:
+class HuberFit(Printed):
     """A fit that counts large residuals by their size instead of their square.
 
     Attributes
@@ -93,8 +101,8 @@ class HuberFit:
         others = {"scale": self.scale, "outliers": self.outliers, "repetitions": self.repetitions}
         return {"fit": self.fit.to_dict(), **others}
 
-    def __str__(self) -> str:
-        return f"{self.fit}\n{'scale':<14}{self.scale:.6g}\n{'outliers':<14}{self.outliers}"
+    def _rows(self) -> list[tuple[str, str]]:
+        return [*self.fit._rows(), ("scale", f"{self.scale:.6g}"), ("outliers", f"{self.outliers}")]
 
 
 def huber(x: Any, y: Any, *, intercept: bool = True, threshold: float = 1.345) -> HuberFit:

@@ -8,12 +8,13 @@ from typing import Any, Literal
 
 from .. import _core
 from .._arrays import number
+from .._printed import Printed
 from .._stream import Stream
 from ..errors import ParameterError
 
 
 @dataclass(frozen=True)
-class Description:
+class Description(Printed):
     """What a record holds, in the unit of the record.
 
     Attributes
@@ -54,7 +55,7 @@ class Description:
         """Return the fields as plain JSON values."""
         return asdict(self)
 
-    def __str__(self) -> str:
+    def _rows(self) -> list[tuple[str, str]]:
         rows = [
             ("samples", f"{self.count}"),
             ("mean", f"{self.mean:.9g}"),
@@ -67,13 +68,7 @@ class Description:
             rows += [("skew", f"{self.skew:.6g}"), ("excess kurtosis", f"{self.excess_kurtosis:.6g}")]
         rows += [("NaN skipped", f"{self.nan_count}")] * bool(self.nan_count)
         rows += [("clipped", f"{self.clipped_count}")] * bool(self.clipped_count)
-        return "\n".join(f"{name:<16}{value}" for name, value in rows)
-
-    def _repr_html_(self) -> str:
-        lines = (
-            line.split(None, 1) if " at " in line else (line[:16].strip(), line[16:]) for line in str(self).split("\n")
-        )
-        return "<table>" + "".join(f"<tr><th>{a}</th><td>{b}</td></tr>" for a, b in lines) + "</table>"
+        return rows
 
 
 class Moments(Stream, _core.Moments):

@@ -22,8 +22,8 @@ mod _core {
     use crate::effects::effect_cards;
     #[pymodule_export]
     use crate::regression::{
-        LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, fit_line, fit_linear,
-        fit_polynomial, huber, theil_sen,
+        LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, RollingPolynomial, fit_line,
+        fit_linear, fit_polynomial, huber, theil_sen,
     };
     #[pymodule_export]
     use crate::signal::{Filter, LowPass, zero_phase};

@@ -370,6 +370,61 @@ impl PolynomialSums {
     }
 }
 
+/// A polynomial over the last points.
+#[pyclass(module = "luztar._core", subclass)]
+pub struct RollingPolynomial(core::RollingPolynomial);
+
+#[pymethods]
+impl RollingPolynomial {
+    #[new]
+    #[pyo3(signature = (degree=1, window=2))]
+    fn new(degree: usize, window: usize) -> Result<Self, CoreError> {
+        Ok(Self(core::RollingPolynomial::new(degree, window)?))
+    }
+
+    /// Add points: two array_likes of shape (n,), n >= 0, finite, of magnitude up to 1e150.
+    fn push(&mut self, py: Python<'_>, x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (xs, ys) = (door::vector("x", x)?, door::vector("y", y)?);
+        let (xs, ys) = (xs.as_slice()?, ys.as_slice()?);
+        door::run(py, xs.len(), || self.0.push(xs, ys))
+            .map_err(|e| door::explained_of(e, &[("x", x), ("y", y)]))
+    }
+
+    /// The degree.
+    #[getter]
+    fn degree(&self) -> usize {
+        self.0.degree()
+    }
+
+    /// The window's length in points.
+    #[getter]
+    fn window(&self) -> usize {
+        self.0.window()
+    }
+
+    /// How many points the window holds now.
+    #[getter]
+    fn count(&self) -> u64 {
+        self.0.count()
+    }
+
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<PolynomialTuple<'py>> {
+        let fit = door::run(py, self.0.count() as usize, || self.0.fit()).map_err(CoreError)?;
+        Ok(polynomial_tuple(py, fit))
+    }
+
+    /// All there is to store: whole numbers, then floats.
+    fn state(&self) -> State {
+        self.0.state()
+    }
+
+    /// Go on from a stored state.
+    fn restore(&mut self, integers: Vec<u64>, numbers: Vec<f64>) -> Result<(), CoreError> {
+        self.0 = core::RollingPolynomial::from_state(&integers, &numbers)?;
+        Ok(())
+    }
+}
+
 /// Recursive least squares in square-root form.
 #[pyclass(module = "luztar._core", subclass)]
 pub struct Recursive(core::Recursive);

@@ -8,6 +8,7 @@ pub mod polynomial;
 pub mod recursive;
 mod refine;
 pub mod rolling_line;
+pub mod rolling_polynomial;
 pub mod theil_sen;
 mod triangle;
 mod twofold;
@@ -17,6 +18,7 @@ pub use linear::{LinearFit, LinearSums, fit_linear};
 pub use polynomial::{PolynomialFit, PolynomialSums, fit_polynomial};
 pub use recursive::Recursive;
 pub use rolling_line::RollingLine;
+pub use rolling_polynomial::RollingPolynomial;
 
 use crate::error::{Error, LARGEST, require_finite};
 

@@ -51,13 +51,7 @@ impl PolynomialSums {
     /// [`Error::OutOfRange`] for a degree above [`HIGHEST`] or a forgetting factor outside (0, 1],
     /// [`Error::Singular`] for an empty domain.
     pub fn new(degree: usize, domain: (f64, f64), forgetting: f64) -> Result<Self, Error> {
-        if degree > HIGHEST {
-            return Err(Error::OutOfRange {
-                name: "degree",
-                value: degree as f64,
-                interval: format!("[0, {HIGHEST}]"),
-            });
-        }
+        require_degree(degree)?;
         require_moderate("domain", &[domain.0, domain.1])?;
         if domain.0 >= domain.1 && degree > 0 {
             return Err(Error::Singular {
@@ -320,6 +314,18 @@ impl Design for Points<'_> {
         let y = P::load(&rows.map(|i| self.y[i]));
         Twofold::difference(y, P::splat(self.y_origin))
     }
+}
+
+/// Refuses a degree above the highest.
+pub(super) fn require_degree(degree: usize) -> Result<(), Error> {
+    if degree <= HIGHEST {
+        return Ok(());
+    }
+    Err(Error::OutOfRange {
+        name: "degree",
+        value: degree as f64,
+        interval: format!("[0, {HIGHEST}]"),
+    })
 }
 
 /// 1/h in twice the precision: one Newton step.
