@@ -2,8 +2,10 @@
 
 pub(crate) mod compensated;
 pub mod counts;
+pub mod figures;
 pub mod groups;
 pub mod moments;
+mod moments_state;
 pub mod rolling;
 pub(crate) mod simd;
 pub mod sketch;

@@ -2,14 +2,12 @@
 //!
 //! Samples wait until a block is full, so that the sums are the same to the last bit whatever the chunks were.
 
+use super::figures::Figures;
 use super::spread::{BLOCK, Range, Spread};
-use crate::error::{Error, LARGEST, require_finite};
+use crate::error::{Error, LARGEST};
 
 /// The largest magnitude where third and fourth powers are summed as well: its fourth power is [`LARGEST`]'s square.
 pub const LARGEST_FOR_SHAPE: f64 = 1e75;
-
-/// Below this variance the fourth powers of the deviations run out of exponents.
-const LEAST_VARIANCE: f64 = 1e-150;
 
 /// An extreme value and where it was first met.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,23 +42,23 @@ impl Default for Settings {
 /// The moments of everything pushed so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
-    settings: Settings,
-    done: Done,
+    pub(super) settings: Settings,
+    pub(super) done: Done,
     /// Kept samples that do not fill a block yet.
-    waiting: [f64; BLOCK],
-    filled: usize,
+    pub(super) waiting: [f64; BLOCK],
+    pub(super) filled: usize,
 }
 
 /// Everything but the waiting samples: what a refused chunk must leave as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Done {
-    spread: Spread,
+pub(super) struct Done {
+    pub(super) spread: Spread,
     /// Samples seen, skipped ones included.
-    seen: u64,
-    nan: u64,
-    clipped: u64,
-    min: Option<Extreme>,
-    max: Option<Extreme>,
+    pub(super) seen: u64,
+    pub(super) nan: u64,
+    pub(super) clipped: u64,
+    pub(super) min: Option<Extreme>,
+    pub(super) max: Option<Extreme>,
 }
 
 impl Default for Moments {
@@ -265,117 +263,6 @@ impl Moments {
             shape: self.settings.shape,
         }
     }
-
-    /// Counts and indices, then numbers: all there is to store. The waiting samples come last.
-    #[must_use]
-    pub fn state(&self) -> (Vec<u64>, Vec<f64>) {
-        let Done {
-            spread,
-            seen,
-            nan,
-            clipped,
-            min,
-            max,
-        } = self.done;
-        let index = |e: Option<Extreme>| e.map_or(0, |e| e.index);
-        let value = |e: Option<Extreme>| e.map_or(0.0, |e| e.value);
-        let Settings {
-            shape,
-            skip_nan,
-            clipped_at,
-        } = self.settings;
-        let flags = u64::from(shape) + 2 * u64::from(skip_nan);
-        let integers = vec![
-            flags,
-            spread.count,
-            seen,
-            nan,
-            clipped,
-            index(min),
-            index(max),
-        ];
-        let mut numbers = vec![clipped_at.0, clipped_at.1, value(min), value(max)];
-        for part in [spread.mean, spread.squares, spread.cubes, spread.fourths] {
-            numbers.extend([part.value, part.rest]);
-        }
-        numbers.extend(&self.waiting[..self.filled]);
-        (integers, numbers)
-    }
-
-    /// Rebuilds what [`Self::state`] stored.
-    ///
-    /// # Errors
-    /// [`Error::Length`], [`Error::NonFinite`] or [`Error::OutOfRange`] for numbers it cannot have made.
-    pub fn from_state(integers: &[u64], numbers: &[f64]) -> Result<Self, Error> {
-        let short = |got| Error::Length {
-            name: "state",
-            expected: format!("7 integers and 12 to {} numbers", 11 + BLOCK),
-            got,
-        };
-        let &[flags, count, seen, nan, clipped, min_at, max_at] = integers else {
-            return Err(short(integers.len()));
-        };
-        let Some((
-            &[
-                low,
-                high,
-                min,
-                max,
-                mean,
-                mean_rest,
-                sq,
-                sq_rest,
-                cu,
-                cu_rest,
-                fo,
-                fo_rest,
-            ],
-            waiting,
-        )) = numbers.split_first_chunk::<12>()
-        else {
-            return Err(short(numbers.len()));
-        };
-        if waiting.len() >= BLOCK {
-            return Err(short(numbers.len()));
-        }
-        require_finite("state", &numbers[2..])?;
-        let settings = Settings {
-            shape: flags & 1 == 1,
-            skip_nan: flags & 2 == 2,
-            clipped_at: (low, high),
-        };
-        let kept = count.saturating_add(waiting.len() as u64);
-        if kept.saturating_add(nan) > seen
-            || clipped > kept
-            || (kept > 0 && min_at.max(max_at) >= seen)
-        {
-            return Err(Error::OutOfRange {
-                name: "state",
-                value: min_at.max(max_at) as f64,
-                interval: format!("[0, {seen})"),
-            });
-        }
-        let part = |value, rest| super::compensated::Compensated { value, rest };
-        let extreme = |value, index| (kept > 0).then_some(Extreme { value, index });
-        let mut moments = Self::new(settings);
-        moments.done = Done {
-            spread: Spread {
-                count,
-                mean: part(mean, mean_rest),
-                squares: part(sq, sq_rest),
-                cubes: part(cu, cu_rest),
-                fourths: part(fo, fo_rest),
-            },
-            seen,
-            nan,
-            clipped,
-            min: extreme(min, min_at),
-            max: extreme(max, max_at),
-        };
-        moments.waiting[..waiting.len()].copy_from_slice(waiting);
-        moments.filled = waiting.len();
-        Ok(moments)
-    }
 }
 
 impl Settings {
@@ -473,85 +360,6 @@ fn first_of(
         (Some(old), Some(new)) if beats(new.value, old.value) => Some(new),
         (None, new) => new,
         (old, _) => old,
-    }
-}
-
-/// Mean, deviations and shape of the samples kept.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figures {
-    spread: Spread,
-    shape: bool,
-}
-
-impl Figures {
-    /// How many samples.
-    #[must_use]
-    pub fn count(&self) -> u64 {
-        self.spread.count
-    }
-
-    /// The sum of squared deviations from the mean.
-    #[must_use]
-    pub fn sum_of_squares(&self) -> f64 {
-        self.spread.sum_of_squares()
-    }
-
-    /// The mean; None of nothing.
-    #[must_use]
-    pub fn mean(&self) -> Option<f64> {
-        (self.count() > 0).then_some(self.spread.mean.value)
-    }
-
-    /// The mean squared deviation, divided by `n`; None of nothing.
-    #[must_use]
-    pub fn variance_population(&self) -> Option<f64> {
-        (self.count() > 0).then(|| self.sum_of_squares() / self.count() as f64)
-    }
-
-    /// The estimated variance, divided by `n - 1`; None below two samples.
-    #[must_use]
-    pub fn variance_sample(&self) -> Option<f64> {
-        (self.count() > 1).then(|| self.sum_of_squares() / (self.count() - 1) as f64)
-    }
-
-    /// The population standard deviation (TB 038); None of nothing.
-    #[must_use]
-    pub fn std_population(&self) -> Option<f64> {
-        self.variance_population().map(f64::sqrt)
-    }
-
-    /// The sample standard deviation; None below two samples.
-    #[must_use]
-    pub fn std_sample(&self) -> Option<f64> {
-        self.variance_sample().map(f64::sqrt)
-    }
-
-    /// The root of the mean square; None of nothing.
-    #[must_use]
-    pub fn rms(&self) -> Option<f64> {
-        let variance = self.variance_population()?;
-        Some(self.spread.mean.value.hypot(variance.sqrt()))
-    }
-
-    /// The population skewness `m3 / m2^1.5`; None if not asked for or of a deviation below 1e-75.
-    #[must_use]
-    pub fn skew(&self) -> Option<f64> {
-        let variance = self.varying()?;
-        let third = self.spread.cubes.value / self.count() as f64;
-        Some(third / variance / variance.sqrt())
-    }
-
-    /// The population excess kurtosis `m4 / m2^2 - 3`; None as for [`Self::skew`].
-    #[must_use]
-    pub fn excess_kurtosis(&self) -> Option<f64> {
-        let variance = self.varying()?;
-        let fourth = self.spread.fourths.value / self.count() as f64;
-        Some(fourth / variance / variance - 3.0)
-    }
-
-    fn varying(&self) -> Option<f64> {
-        self.variance_population()
-            .filter(|v| self.shape && *v > LEAST_VARIANCE)
     }
 }
 
