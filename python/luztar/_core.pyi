@@ -24,10 +24,13 @@ __all__ = [
     "fit_line",
     "fit_linear",
     "fit_polynomial",
+    "held_out",
     "huber",
     "moments_by_label",
     "moments_by_window",
+    "normal_equations",
     "rolling",
+    "solve_block",
     "theil_sen",
     "zero_phase",
 ]
@@ -316,6 +319,7 @@ def effect_cards() -> list[_Card]: ...
 
 # driven runs
 
+_Rows = tuple[int, int, float]
 _Terms = Sequence[tuple[str, Sequence[float]]]
 
 @final
@@ -334,6 +338,7 @@ class Recording:
         turn_rad_per_unit: float,
         load_n: NDArray[np.float64] | None,
     ) -> Recording: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[NDArray[np.float64]], dict[str, object]]: ...
     def __len__(self) -> int: ...
     @property
     def resolution(self) -> float: ...
@@ -346,6 +351,18 @@ class Recording:
     def kept(self) -> list[NDArray[np.float64]]: ...
     def strokes(self) -> list[tuple[int, int, float, float]]: ...
     def measured(self, channel: NDArray[np.float64]) -> NDArray[np.float64]: ...
-    def state(self, model: _Terms) -> NDArray[np.float64]: ...
     def start_shift(self, model: _Terms) -> NDArray[np.float64]: ...
     def columns(self, model: _Terms, wanted: Sequence[int]) -> NDArray[np.float64]: ...
+    def normal_equations(
+        self,
+        model: _Terms,
+        given: Sequence[tuple[int, float]],
+        effort: NDArray[np.float64],
+        strokes: Sequence[_Rows],
+    ) -> NDArray[np.float64]: ...
+
+def normal_equations(columns: NDArray[np.float64], strokes: Sequence[_Rows]) -> NDArray[np.float64]: ...
+def solve_block(block: NDArray[np.float64], bound: float) -> NDArray[np.float64]: ...
+def held_out(
+    products: NDArray[np.float64], fold_of: Sequence[int], folds: int, bound: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
