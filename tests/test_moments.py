@@ -230,6 +230,18 @@ def test_merging_nothing_changes_nothing() -> None:
     assert empty.describe() == m.describe()
 
 
+def test_moments_that_know_less_are_not_merged_in_silence() -> None:
+    shaped, plain = stats.Moments([1.0, 2.0, 4.0], shape=True), stats.Moments([5.0])
+    before = shaped.describe()
+    with pytest.raises(ParameterError, match="without cannot be merged"):
+        shaped.merge(plain)
+    with pytest.raises(ParameterError, match="different limits"):
+        plain.merge(stats.Moments([1.0], clipped_at=(0, 1)))
+    assert shaped.describe() == before
+    plain.merge(shaped)
+    assert plain.count == 4 and plain.skew is None
+
+
 def test_object_merges_with_itself() -> None:
     m = stats.Moments([1.0, 3.0])
     m.merge(m)

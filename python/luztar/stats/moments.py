@@ -99,7 +99,8 @@ class Moments(Stream, _core.Moments):
     bit however the stream was cut into chunks (``test_chunks_do_not_change_a_bit``), and on every instruction set. The
     standard deviation agrees with the exact rational answer to 14 digits on NumAcc1 to 4
     (``test_standard_deviation_has_fourteen_digits_of_the_exact_answer``). Merging equals pushing the joined record up
-    to rounding (``test_merging_two_parts_is_pushing_both``). Arrays of int16, int32 and float32 are taken as they are,
+    to rounding (``test_merging_two_parts_is_pushing_both``); moments that lack the shape, or count clipping at other
+    limits, are refused. Arrays of int16, int32 and float32 are taken as they are,
     without a converted copy. A push allocates nothing. One object serves one thread: a push while another is running
     raises ``RuntimeError``.
 

@@ -103,7 +103,7 @@ impl LineSums {
     }
 
     fn figures_over(&self, origin: f64, step: f64) -> Result<LineTuple, CoreError> {
-        Ok(line_tuple(self.0.fit()?.stretched(origin, step)))
+        Ok(line_tuple(self.0.fit()?.stretched(origin, step)?))
     }
 
     /// All there is to store: whole numbers, then floats.

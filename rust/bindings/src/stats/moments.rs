@@ -61,8 +61,7 @@ impl Moments {
     /// Add what another object has seen, as if it came after this one's samples.
     fn merge(slf: &Bound<'_, Self>, later: &Bound<'_, Self>) -> PyResult<()> {
         let later = later.try_borrow()?.0;
-        slf.try_borrow_mut()?.0.merge(&later);
-        Ok(())
+        Ok(slf.try_borrow_mut()?.0.merge(&later).map_err(CoreError)?)
     }
 
     /// Whether third and fourth powers are summed, NaN skipped, and beyond what samples count as clipped.

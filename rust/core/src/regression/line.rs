@@ -6,7 +6,9 @@
 //! standard errors: Draper, Smith, "Applied Regression Analysis", 3rd ed., section 1.4.
 
 use super::line_block::{BLOCK, of_block, of_weighted_block, squared_residuals};
-use crate::error::{Error, LARGEST, require_finite, require_moderate, require_same_length};
+use crate::error::{
+    Error, LARGEST, require_finite, require_moderate, require_representable, require_same_length,
+};
 use crate::stats::compensated::Compensated;
 
 /// The numbers of [`LineSums::state`].
@@ -42,9 +44,26 @@ pub struct Line {
 }
 
 impl Line {
+    fn representable(self) -> Result<Self, Error> {
+        let errors = [
+            self.slope_se,
+            self.intercept_se,
+            self.residual_std,
+            self.mean_se,
+        ];
+        let values = [self.slope, self.intercept, self.r, self.x_mean, self.y_mean];
+        require_representable(
+            "the line",
+            values.into_iter().chain(errors.into_iter().flatten()),
+        )?;
+        Ok(self)
+    }
+
     /// The same line over `origin + step * x`: from sample numbers to times.
-    #[must_use]
-    pub fn stretched(self, origin: f64, step: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Unrepresentable`] where the new slope or intercept is no number any more.
+    pub fn stretched(self, origin: f64, step: f64) -> Result<Self, Error> {
         let slope = self.slope / step;
         let slope_se = self.slope_se.map(|se| se / step.abs());
         let mut mean = Compensated::product(step, self.x_mean);
@@ -62,6 +81,7 @@ impl Line {
             x_mean_rest: mean.rest,
             ..self
         }
+        .representable()
     }
 }
 
@@ -339,7 +359,7 @@ impl Sums {
         let (xx, xy, yy) = (self.xx.value, self.xy.value, self.yy.value);
         // Cauchy-Schwarz holds for the exact sums; rounding may leave the difference just below zero.
         let residual = (yy - xy * (xy / xx)).max(0.0);
-        Ok(self.line(slope, residual, by_weight))
+        self.line(slope, residual, by_weight).representable()
     }
 
     pub(super) fn line(&self, slope: f64, residual: f64, by_weight: bool) -> Line {
@@ -392,7 +412,7 @@ pub fn fit_line(x: &[f64], y: &[f64], weights: Option<&[f64]>) -> Result<Line, E
         let w = weights.map(|w| &w[at * BLOCK..at * BLOCK + x.len()]);
         residual.add(squared_residuals(x, y, w, means, slope));
     }
-    Ok(sums.line(slope, residual.value, false))
+    sums.line(slope, residual.value, false).representable()
 }
 
 #[cfg(test)]

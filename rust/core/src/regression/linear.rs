@@ -6,7 +6,7 @@
 use super::refine::{Design, refine};
 use super::triangle::Triangle;
 use super::twofold::Twofold;
-use crate::error::{Error, require_finite, require_moderate};
+use crate::error::{Error, require_finite, require_moderate, require_representable};
 use crate::stats::compensated::Compensated;
 use crate::stats::simd::{PACK, Pack};
 
@@ -34,6 +34,20 @@ pub struct LinearFit {
     pub n: u64,
     /// Rows (with forgetting: the sum of weights) less coefficients.
     pub degrees_of_freedom: f64,
+}
+
+impl LinearFit {
+    fn representable(self) -> Result<Self, Error> {
+        let sums = [self.residual_squares, self.explained_squares];
+        let errors = self
+            .standard_errors
+            .iter()
+            .flatten()
+            .chain(&self.residual_std);
+        let values = self.coefficients.iter().chain(&sums).chain(errors);
+        require_representable("the fit", values.copied())?;
+        Ok(self)
+    }
 }
 
 /// What is kept of the rows pushed so far.
@@ -194,7 +208,7 @@ impl LinearSums {
     /// # Errors
     /// [`Error::Length`] for fewer rows than coefficients, [`Error::Singular`] for dependent columns.
     pub fn fit(&self) -> Result<LinearFit, Error> {
-        Ok(self.figures(&self.solve()?))
+        self.figures(&self.solve()?).representable()
     }
 
     fn figures(&self, solved: &Solved) -> LinearFit {
@@ -253,7 +267,9 @@ impl LinearSums {
             let size = (from..=j).fold(0.0_f64, |s, i| s.hypot(triangle.at(i, j)));
             if triangle.at(j, j).abs() <= DEPENDENT * size {
                 let column = j + usize::from(!self.intercept);
-                let reason = if size == 0.0 && from == 1 {
+                let reason = if size == 0.0 && from == 0 {
+                    format!("predictor {column} is zero throughout, or below 1e-145")
+                } else if size == 0.0 {
                     format!("predictor {column} does not vary")
                 } else {
                     format!("predictor {column} is a combination of those before it")
@@ -366,7 +382,7 @@ pub fn fit_linear(
         origin: &sums.origin,
     };
     refine(&mut solved, weights, &rows);
-    Ok(sums.figures(&solved))
+    sums.figures(&solved).representable()
 }
 
 /// Rows relative to the first one, the constant in front.

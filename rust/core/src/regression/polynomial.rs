@@ -6,7 +6,7 @@
 use super::linear::{LinearSums, Solved};
 use super::refine::{Design, refine};
 use super::twofold::Twofold;
-use crate::error::{Error, require_moderate, require_same_length};
+use crate::error::{Error, require_moderate, require_representable, require_same_length};
 use crate::stats::compensated::Compensated;
 use crate::stats::simd::{PACK, Pack};
 
@@ -34,6 +34,25 @@ pub struct PolynomialFit {
     pub n: u64,
     /// Points (with forgetting: the sum of weights) less coefficients.
     pub degrees_of_freedom: f64,
+}
+
+impl PolynomialFit {
+    fn representable(self) -> Result<Self, Error> {
+        let sums = [self.residual_squares, self.explained_squares];
+        let errors = self
+            .standard_errors
+            .iter()
+            .flatten()
+            .chain(&self.residual_std);
+        let values = self
+            .coefficients
+            .iter()
+            .chain(&self.chebyshev)
+            .chain(&sums)
+            .chain(errors);
+        require_representable("the polynomial", values.copied())?;
+        Ok(self)
+    }
 }
 
 /// What is kept of the points pushed so far.
@@ -145,7 +164,7 @@ impl PolynomialSums {
     /// # Errors
     /// [`Error::Length`] for fewer points than coefficients, [`Error::Singular`] for too few distinct x.
     pub fn fit(&self) -> Result<PolynomialFit, Error> {
-        Ok(self.figures(&self.solve()?))
+        self.figures(&self.solve()?).representable()
     }
 
     fn solve(&self) -> Result<Solved, Error> {
@@ -283,7 +302,7 @@ pub fn fit_polynomial(
         y_origin: sums.linear.y_origin(),
     };
     refine(&mut solved, weights, &points);
-    Ok(sums.figures(&solved))
+    sums.figures(&solved).representable()
 }
 
 /// Chebyshev polynomials of the mapped points.

@@ -6,7 +6,7 @@
 //! Source: Sen, J. Am. Stat. Assoc. 63 (1968) 1379 (estimate and interval); Cole, Salowe, Steiger, Szemerédi, SIAM J.
 //! Comput. 18 (1989) 792 (slopes as inversions).
 
-use crate::error::{Error, require_moderate, require_same_length};
+use crate::error::{Error, require_moderate, require_representable, require_same_length};
 
 /// Up to so many points all pairs are made: 16 MB of slopes.
 const ALL_PAIRS: usize = 2048;
@@ -76,9 +76,14 @@ pub fn theil_sen(x: &[f64], y: &[f64], normal_quantile: f64) -> Result<TheilSen,
     let slope = 0.5 * a + 0.5 * b;
     let mut heights: Vec<f64> = points.iter().map(|(x, y)| y - slope * x).collect();
     let height = median(&mut heights);
+    let intercept = (height + y_middle) - slope * x_middle;
+    require_representable(
+        "the line",
+        [slope, intercept, slope_low, slope_high].into_iter(),
+    )?;
     Ok(TheilSen {
         slope,
-        intercept: (height + y_middle) - slope * x_middle,
+        intercept,
         slope_low,
         slope_high,
         n: n as u64,
@@ -130,8 +135,11 @@ fn by_bisection(points: &[(f64, f64)], ranks: [u64; 4]) -> [f64; 4] {
         }
         inversions(&mut heights, &mut room)
     };
+    // Beyond it, slope times x overflows; a slope up there is a difference of rounding errors.
+    let widest = points.iter().fold(1e-300_f64, |m, p| m.max(p.0.abs()));
+    let steepest = (1e300 / widest).min(f64::MAX / 4.0);
     ranks.map(|rank| {
-        let (mut low, mut high) = (ordered(-f64::MAX / 4.0), ordered(f64::MAX / 4.0));
+        let (mut low, mut high) = (ordered(-steepest), ordered(steepest));
         // The largest slope with at most `rank` slopes below it.
         while high - low > 1 {
             let middle = low + (high - low) / 2;

@@ -25,6 +25,9 @@ pub(super) struct Triangle {
     gain: f64,
 }
 
+/// Columns whose squares sum to less, entries below 1e-145, count as zero: their reflections would overflow.
+const LEAST_SQUARES: f64 = 1e-290;
+
 /// A gain above this is settled at once, long before squares could overflow.
 const MOST_GAIN: f64 = 1e60;
 
@@ -137,7 +140,7 @@ impl Kernel for Reflect<'_> {
             let (left, right) = self.rows.split_at_mut((j + 1) * ROWS);
             let v = &left[j * ROWS..j * ROWS + self.count];
             let squares = dot::<P>(v, v);
-            if squares == 0.0 {
+            if squares < LEAST_SQUARES {
                 continue;
             }
             let head = self.factor[j * k + j];

@@ -194,7 +194,20 @@ impl Moments {
     }
 
     /// Adds the samples another object has seen, as if they came after this one's. The settings stay this one's.
-    pub fn merge(&mut self, later: &Self) {
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] where the other lacks what this one sums, or counted clipping at other limits.
+    pub fn merge(&mut self, later: &Self) -> Result<(), Error> {
+        if self.settings.shape && !later.settings.shape {
+            return Err(Error::Unlike {
+                what: "moments with shape and moments without",
+            });
+        }
+        if self.settings.clipped_at != later.settings.clipped_at {
+            return Err(Error::Unlike {
+                what: "moments that count clipping at different limits",
+            });
+        }
         let (shape, start) = (self.settings.shape, self.done.seen);
         let other = later.done;
         let total = later.total();
@@ -210,6 +223,7 @@ impl Moments {
         self.done.seen += other.seen;
         self.done.nan += other.nan;
         self.done.clipped += other.clipped;
+        Ok(())
     }
 
     /// The sums with the waiting samples in them.
@@ -392,7 +406,7 @@ mod tests {
         let (mut a, mut b) = (Moments::default(), Moments::default());
         a.push(&[2.0, 5.0]).expect("finite");
         b.push(&[5.0, -1.0, -1.0]).expect("finite");
-        a.merge(&b);
+        a.merge(&b).expect("alike");
         assert_eq!(a.max().map(|e| e.index), Some(1));
         assert_eq!(a.min().map(|e| e.index), Some(3));
     }
