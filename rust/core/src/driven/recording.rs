@@ -7,7 +7,7 @@ use super::staircase::join_steps;
 use super::strokes::{Phases, Stroke, strokes};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
-use crate::signal::{AntiAlias, CutoffAt, Edges, LowPass, Passes, ZeroPhase};
+use crate::signal::{AntiAlias, Band as PassBand, Butterworth, CutoffAt, Edges, Passes, ZeroPhase};
 
 /// Poles per pass of the low pass of a comparison and of the kinematics.
 const POLES: usize = 4;
@@ -92,17 +92,17 @@ impl Recording {
                 .max(1.0) as usize
         });
         let low_pass = if band.anti_alias {
-            ZeroPhase::anti_alias(&AntiAlias::new(decimate)?)
+            ZeroPhase::anti_alias(&AntiAlias::new(decimate)?)?
         } else {
             zero_phase(band.upper_hz, sample_rate_hz)?
         };
         let kinematic_hz = KINEMATICS_OVER_BAND * band.upper_hz;
-        let mut smoother = (kinematic_hz < 0.45 * sample_rate_hz)
+        let smoother = (kinematic_hz < 0.45 * sample_rate_hz)
             .then(|| zero_phase(kinematic_hz, sample_rate_hz))
             .transpose()?;
-        let mut smoothed = |x: &[f64]| {
+        let smoothed = |x: &[f64]| {
             smoother
-                .as_mut()
+                .as_ref()
                 .map_or_else(|| Ok(x.to_vec()), |filter| run(filter, x))
         };
         let mut smooth = smoothed(position)?;
@@ -214,22 +214,22 @@ impl Recording {
 
     /// A column through the comparison's low pass, at full rate.
     pub(super) fn filtered(&self, column: &[f64]) -> Result<Vec<f64>, Error> {
-        run(&mut self.low_pass.clone(), column)
+        run(&self.low_pass, column)
     }
 }
 
 fn zero_phase(cutoff_hz: f64, sample_rate_hz: f64) -> Result<ZeroPhase, Error> {
-    let design = LowPass::new(
+    let design = Butterworth::new(
         POLES,
-        cutoff_hz,
+        PassBand::Low { cutoff_hz },
         sample_rate_hz,
         Passes::ForwardBackward,
         CutoffAt::PerPass,
     )?;
-    ZeroPhase::new(design, Edges::default())
+    ZeroPhase::new(&design, Edges::default())
 }
 
-fn run(filter: &mut ZeroPhase, x: &[f64]) -> Result<Vec<f64>, Error> {
+fn run(filter: &ZeroPhase, x: &[f64]) -> Result<Vec<f64>, Error> {
     let mut out = vec![0.0; x.len()];
     filter.apply(x, &mut out)?;
     Ok(out)

@@ -1,0 +1,238 @@
+//! What lies beyond the ends of a record, told to the two passes by the states they start with.
+//!
+//! With the first pass `f = C1 s + D1 x`, `s += E s + B x` and the second run backward over `f`, the state of the second
+//! at the record's last sample is `Q s_end + sum over m of A^m G e_m`: `s_end` the first's state after the record, `e_m`
+//! the extension, `Q = sum of A^k B C1 A^k` and `G = B D1 + A Q B`. So the extension to the right is never filtered: one
+//! run of the system with `G` in place of `B`, from far to near and without outputs, is enough, as one of `B` is to the
+//! left. By point reflection both read the record itself.
+
+use super::lookahead::{Block, State};
+use super::matrix::{Matrix, Vector, ZERO, apply, power, product, solve, together};
+use super::simd::{Affine, Order};
+use super::state_space::{StateSpace, Steady};
+use super::system::System;
+
+/// Everything about the extensions that depends on the filter alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Around {
+    /// State after the record to the state the second pass starts with.
+    q: Matrix,
+    /// The extension's way into the second pass.
+    pub(super) g: Vector,
+    /// The first pass, against the order of memory.
+    left: Block,
+    /// `G` in place of `B`, as the samples lie.
+    right: Block,
+    /// `G` in place of `B`, against the order of memory.
+    right_turned: Block,
+    right_steady: Steady,
+}
+
+/// The states the passes start with, as far as the record tells.
+#[derive(Debug, Clone)]
+pub struct Starts {
+    /// Before the first sample of the first pass.
+    pub first: Vector,
+    rest: Rest,
+}
+
+#[derive(Debug, Clone)]
+enum Rest {
+    /// The extension's part of the second's start.
+    Infinite(Vector),
+    /// The extension itself, which ends in a constant.
+    Padded(Vec<f64>),
+}
+
+impl Starts {
+    /// The state the second pass starts with, from the state `after` the first.
+    pub fn second(
+        &self,
+        first: &System,
+        second: &System,
+        around: &Around,
+        after: &Vector,
+    ) -> Vector {
+        match &self.rest {
+            Rest::Infinite(part) => {
+                let own = apply(first.space.n, &around.q, after);
+                std::array::from_fn(|i| own[i] + part[i])
+            }
+            Rest::Padded(extension) => {
+                let mut state = *after;
+                let through: Vec<f64> = extension
+                    .iter()
+                    .map(|e| first.space.step(&mut state, *e))
+                    .collect();
+                let mut state = second.steady.at(through[through.len() - 1], 0.0);
+                for f in through.iter().rev() {
+                    second.space.advance(&mut state, *f);
+                }
+                state
+            }
+        }
+    }
+}
+
+impl Around {
+    /// Sums the doubling series for `Q` until nothing is added.
+    pub fn new(first: &StateSpace, block: &Block) -> Self {
+        let n = first.n;
+        let mut q = ZERO;
+        for (row, b) in q.iter_mut().zip(&first.b) {
+            *row = first.c.map(|c| b * c);
+        }
+        let mut e = first.e;
+        // Q of 2m terms is Q + A^m Q A^m; ninety doublings outlast any design.
+        for _ in 0..90 {
+            let aq = plus(&q, &product(n, &e, &q));
+            let more = plus(&aq, &product(n, &aq, &e));
+            q = plus(&q, &more);
+            if more.as_flattened().iter().all(|v| v.abs() < 1e-30) {
+                break;
+            }
+            e = together(n, &e, &e);
+        }
+        let qb = apply(n, &q, &first.b);
+        let eqb = apply(n, &first.e, &qb);
+        let g: Vector = std::array::from_fn(|i| first.b[i] * first.d + qb[i] + eqb[i]);
+        let right_space = StateSpace { b: g, ..*first };
+        let right = Block::forward(&right_space);
+        Self {
+            q,
+            g,
+            left: block.reversed(),
+            right_turned: right.reversed(),
+            right,
+            right_steady: right_space.steady(),
+        }
+    }
+
+    /// The record reflected once on each side, for at least `pad` samples; the filter has settled on the chord of the
+    /// extension where it begins.
+    pub fn settled(&self, first: &System, x: &[f64], pad: usize) -> Starts {
+        let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
+        let pad = pad.div_ceil(16) * 16;
+        let far = level - x[pad];
+        let mut left = State::from_vector(&first.steady.at(far, -far / pad as f64));
+        let reflected = |shift| Affine {
+            scale: -1.0,
+            shift,
+            lift: 0.0,
+        };
+        first.kernel.advance(
+            &self.left,
+            &mut left,
+            Order::Descending,
+            reflected(level),
+            &x[1..=pad],
+        );
+
+        let end = (last - level) + last;
+        let far = end - x[n - 1 - pad];
+        let slope = ((last - level) - far) / pad as f64;
+        let mut right = State::from_vector(&self.right_steady.at(far, slope));
+        first.kernel.advance(
+            &self.right,
+            &mut right,
+            Order::Ascending,
+            reflected(end),
+            &x[n - 1 - pad..n - 1],
+        );
+        Starts {
+            first: left.vector(),
+            rest: Rest::Infinite(right.vector()),
+        }
+    }
+
+    /// The record, which begins and ends at zero, reflected forever: it repeats every `2 (n - 1)` samples, and so does
+    /// the state.
+    pub fn repeated(&self, first: &System, x: &[f64]) -> Starts {
+        let (states, n) = (first.space.n, x.len());
+        let period = power(states, &first.space.e, 2 * (n - 1));
+        let turned = Affine {
+            scale: -1.0,
+            ..Affine::NONE
+        };
+        // s = A^P s + u, so that (A^P - I) s = -u
+        let closed = |u: &Vector| solve(states, &period, &u.map(|v| -v));
+        let mut left = Run::new(first, first.space.b);
+        left.ascending(&first.block, Affine::NONE, x);
+        left.descending(&self.left, turned, &x[1..n - 1]);
+        let mut right = Run::new(first, self.g);
+        right.descending(&self.right_turned, Affine::NONE, x);
+        right.ascending(&self.right, turned, &x[1..n - 1]);
+        Starts {
+            first: closed(&left.state),
+            rest: Rest::Infinite(closed(&right.state)),
+        }
+    }
+
+    /// The record reflected for `pad` samples on each side, and a constant beyond.
+    pub fn padded(&self, first: &System, x: &[f64], pad: usize) -> Starts {
+        let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
+        let mut state = first.steady.at(level - x[pad], 0.0);
+        for v in x[1..=pad].iter().rev() {
+            first.space.advance(&mut state, level - v);
+        }
+        let end = (last - level) + last;
+        let extension = x[n - 1 - pad..n - 1]
+            .iter()
+            .rev()
+            .map(|v| end - v)
+            .collect();
+        Starts {
+            first: state,
+            rest: Rest::Padded(extension),
+        }
+    }
+}
+
+/// A state on its way over parts of any length, from rest.
+struct Run<'a> {
+    system: &'a System,
+    into: Vector,
+    state: Vector,
+}
+
+impl<'a> Run<'a> {
+    fn new(system: &'a System, into: Vector) -> Self {
+        Self {
+            system,
+            into,
+            state: [0.0; super::matrix::MAX_POLES],
+        }
+    }
+
+    fn ascending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
+        let (blocks, rest) = x.split_at(x.len() / 16 * 16);
+        self.blocks(block, Order::Ascending, affine, blocks);
+        rest.iter().for_each(|v| self.step(affine.scale * v));
+    }
+
+    fn descending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
+        let (rest, blocks) = x.split_at(x.len() % 16);
+        self.blocks(block, Order::Descending, affine, blocks);
+        rest.iter().rev().for_each(|v| self.step(affine.scale * v));
+    }
+
+    fn blocks(&mut self, block: &Block, order: Order, affine: Affine, x: &[f64]) {
+        let mut state = State::from_vector(&self.state);
+        self.system
+            .kernel
+            .advance(block, &mut state, order, affine, x);
+        self.state = state.vector();
+    }
+
+    fn step(&mut self, x: f64) {
+        let space = &self.system.space;
+        let increments = apply(space.n, &space.e, &self.state);
+        for (s, (increment, b)) in self.state.iter_mut().zip(increments.iter().zip(&self.into)) {
+            *s += increment + b * x;
+        }
+    }
+}
+
+fn plus(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j]))
+}
