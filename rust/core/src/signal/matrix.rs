@@ -15,24 +15,46 @@ pub type Matrix = [Vector; MAX_POLES];
 /// The zero matrix.
 pub const ZERO: Matrix = [[0.0; MAX_POLES]; MAX_POLES];
 
+/// Calls a function of a known size, the count of states rounded up: what lies between is zero.
+macro_rules! sized {
+    ($n:expr, $name:ident($($argument:expr),*)) => {
+        match $n {
+            0..=2 => $name::<2>($($argument),*),
+            3..=4 => $name::<4>($($argument),*),
+            5..=8 => $name::<8>($($argument),*),
+            _ => $name::<MAX_POLES>($($argument),*),
+        }
+    };
+}
+
 /// `a b` of the leading `n`.
 pub fn product(n: usize, a: &Matrix, b: &Matrix) -> Matrix {
+    sized!(n, product_of(a, b))
+}
+
+fn product_of<const N: usize>(a: &Matrix, b: &Matrix) -> Matrix {
     let mut result = ZERO;
-    for (row, of_a) in result.iter_mut().zip(a).take(n) {
-        for (factor, of_b) in of_a.iter().zip(b).take(n) {
-            for (r, v) in row.iter_mut().zip(of_b).take(n) {
-                *r += factor * v;
+    for (row, of_a) in result.iter_mut().zip(a).take(N) {
+        let mut sum = [0.0; N];
+        for k in 0..N {
+            for j in 0..N {
+                sum[j] += of_a[k] * b[k][j];
             }
         }
+        row[..N].copy_from_slice(&sum);
     }
     result
 }
 
 /// `a v`.
 pub fn apply(n: usize, a: &Matrix, v: &Vector) -> Vector {
+    sized!(n, apply_of(a, v))
+}
+
+fn apply_of<const N: usize>(a: &Matrix, v: &Vector) -> Vector {
     let mut result = [0.0; MAX_POLES];
-    for (r, row) in result.iter_mut().zip(a).take(n) {
-        *r = row.iter().zip(v).take(n).map(|(a, v)| a * v).sum();
+    for (r, row) in result.iter_mut().zip(a).take(N) {
+        *r = (0..N).map(|j| row[j] * v[j]).sum();
     }
     result
 }
@@ -50,10 +72,14 @@ pub fn apply_left(n: usize, v: &Vector, a: &Matrix) -> Vector {
 
 /// The difference of a product of powers from the identity, `E_a + E_b + E_a E_b`.
 pub fn together(n: usize, a: &Matrix, b: &Matrix) -> Matrix {
-    let mut result = product(n, a, b);
-    for (row, (of_a, of_b)) in result.iter_mut().zip(a.iter().zip(b)).take(n) {
-        for (r, (a, b)) in row.iter_mut().zip(of_a.iter().zip(of_b)).take(n) {
-            *r += a + b;
+    sized!(n, together_of(a, b))
+}
+
+fn together_of<const N: usize>(a: &Matrix, b: &Matrix) -> Matrix {
+    let mut result = product_of::<N>(a, b);
+    for i in 0..N {
+        for j in 0..N {
+            result[i][j] += a[i][j] + b[i][j];
         }
     }
     result

@@ -1,93 +1,195 @@
 //! The block kernel: sixteen samples per step, generic over the registers.
 
 use super::lanes::Lanes;
-use super::{Order, Work};
+use super::{Affine, Order, Work};
 use crate::error::LARGEST;
 use crate::signal::lookahead::{BLOCK, HALF};
 
-/// One block of samples on its way through the registers.
+/// Samples taken in at once: a sample must lie in memory to be broadcast, and two kilobytes stay in the first cache.
+const TILE: usize = 16 * BLOCK;
+
+/// Samples on their way through the registers.
 #[repr(align(64))]
-struct Staged([f64; BLOCK]);
+struct Tile([f64; TILE]);
 
 /// Filters `work.blocks` blocks; false if a sample was not of moderate magnitude.
 ///
-/// `N` states in `S` registers, half a block of outputs in `P` registers.
+/// `N` states in `S` registers, half a block of outputs in `P` registers; `UP` takes the samples as they lie in memory.
 #[inline(always)]
 unsafe fn filter<V: Lanes, const N: usize, const S: usize, const P: usize, const UP: bool>(
     work: Work<'_>,
 ) -> bool {
     unsafe {
         let block = work.block;
+        let indices = V::indices();
         let mut s: [V; S] = load_all(work.state.0.as_ptr());
-        let (scale, shift) = (V::splat(work.affine.scale), V::splat(work.affine.shift));
-        let (lift, limit) = (V::splat(work.affine.lift), V::splat(LARGEST));
+        let r: [[V; S]; HALF] = std::array::from_fn(|j| load_all(block.r[j].as_ptr()));
+        let t: [[V; P]; HALF] = std::array::from_fn(|j| load_all(block.t[j].as_ptr()));
+        let o: [[V; P]; N] = std::array::from_fn(|k| load_all(block.o[k].as_ptr()));
+        let e8: [[V; S]; N] = std::array::from_fn(|k| load_all(block.e8[k].as_ptr()));
+        let e16: [[V; S]; N] = std::array::from_fn(|k| load_all(block.e16[k].as_ptr()));
+        let lift = V::splat(work.affine.lift);
         let mut bad = V::none();
-        for i in 0..work.blocks {
-            let at = BLOCK * if UP { i } else { work.blocks - 1 - i };
-            let (input, output) = (work.input.add(at), work.output.add(at));
-            let mut staged = Staged([0.0; BLOCK]);
-            for p in 0..2 * P {
-                let x = V::load(input.add(p * V::WIDTH));
-                bad = x.outside(limit, bad);
-                x.mul_add(scale, shift)
-                    .store(staged.0.as_mut_ptr().add(p * V::WIDTH));
-            }
-            // The half that comes first in time.
-            let (early, late) = if UP { (0, HALF) } else { (HALF, 0) };
-            let first = staged.0.as_ptr().add(early);
-            let second = staged.0.as_ptr().add(late);
-            let through_first = increments::<V, S>(block, first);
-            let through_second = increments::<V, S>(block, second);
-            let middle = add_all(s, with_states::<V, N, S>(&block.e8, s, through_first));
-            let carried = with_states::<V, N, S>(
-                &block.e8,
-                through_first,
-                add_all(through_first, through_second),
+        let mut tile = Tile([0.0; TILE]);
+        let mut done = 0;
+        while done < work.blocks {
+            let blocks = (work.blocks - done).min(TILE / BLOCK);
+            let at = BLOCK
+                * if UP {
+                    done
+                } else {
+                    work.blocks - done - blocks
+                };
+            bad = take_in::<V>(
+                &mut tile,
+                work.input.add(at),
+                blocks * BLOCK,
+                &work.affine,
+                bad,
             );
-            let next = add_all(s, with_states::<V, N, S>(&block.e16, s, carried));
-            outputs::<V, N, S, P, UP>(work.block, s, first, output.add(early), lift);
-            outputs::<V, N, S, P, UP>(work.block, middle, second, output.add(late), lift);
-            s = next;
+            for i in 0..blocks {
+                let place = BLOCK * if UP { i } else { blocks - 1 - i };
+                let samples = tile.0.as_ptr().add(place);
+                let output = work.output.add(at + place);
+                // The half that comes first in time.
+                let (early, late) = if UP { (0, HALF) } else { (HALF, 0) };
+                // Sums of products in one chain or two, whichever the registers hold: [chain][half][register].
+                let zero = V::splat(0.0);
+                let mut into = [[[zero; S]; 2]; 2];
+                let mut y = [[[lift; P]; 2], [[zero; P]; 2]];
+                for j in 0..HALF {
+                    let chain = j % V::CHAINS;
+                    let x = [
+                        V::splat(*samples.add(early + j)),
+                        V::splat(*samples.add(late + j)),
+                    ];
+                    for half in 0..2 {
+                        for q in 0..S {
+                            into[chain][half][q] = x[half].mul_add(r[j][q], into[chain][half][q]);
+                        }
+                        // A sample acts on the outputs that are not before it.
+                        for p in 0..P {
+                            let before = if UP {
+                                (p + 1) * V::WIDTH <= j
+                            } else {
+                                p * V::WIDTH > j
+                            };
+                            if !before {
+                                y[chain][half][p] = x[half].mul_add(t[j][p], y[chain][half][p]);
+                            }
+                        }
+                    }
+                }
+                let into = joined::<V, S>(&into);
+                let middle = add_all(s, with_states::<V, N, S>(&indices, &e8, s, into[0]));
+                let carried =
+                    with_states::<V, N, S>(&indices, &e8, into[0], add_all(into[0], into[1]));
+                let next = add_all(s, with_states::<V, N, S>(&indices, &e16, s, carried));
+                for k in 0..N {
+                    let (chain, register, lane) = (k % V::CHAINS, k / V::WIDTH, k % V::WIDTH);
+                    let states = [
+                        s[register].lane(&indices, lane),
+                        middle[register].lane(&indices, lane),
+                    ];
+                    for half in 0..2 {
+                        for p in 0..P {
+                            y[chain][half][p] = states[half].mul_add(o[k][p], y[chain][half][p]);
+                        }
+                    }
+                }
+                let y = joined::<V, P>(&y);
+                for p in 0..P {
+                    y[0][p].store(output.add(early + p * V::WIDTH));
+                    y[1][p].store(output.add(late + p * V::WIDTH));
+                }
+                s = next;
+            }
+            done += blocks;
         }
-        for (i, register) in s.iter().enumerate() {
-            register.store(work.state.0.as_mut_ptr().add(i * V::WIDTH));
-        }
+        store_all(&s, work.state.0.as_mut_ptr());
         !V::any(bad)
     }
 }
 
 /// [`filter`] without the outputs.
 #[inline(always)]
-unsafe fn advance<V: Lanes, const N: usize, const S: usize, const P: usize, const UP: bool>(
+unsafe fn advance<V: Lanes, const N: usize, const S: usize, const UP: bool>(
     work: Work<'_>,
 ) -> bool {
     unsafe {
         let block = work.block;
+        let indices = V::indices();
         let mut s: [V; S] = load_all(work.state.0.as_ptr());
-        let (scale, shift) = (V::splat(work.affine.scale), V::splat(work.affine.shift));
-        for i in 0..work.blocks {
-            let input = work
-                .input
-                .add(BLOCK * if UP { i } else { work.blocks - 1 - i });
-            let mut staged = Staged([0.0; BLOCK]);
-            for p in 0..2 * P {
-                let x = V::load(input.add(p * V::WIDTH)).mul_add(scale, shift);
-                x.store(staged.0.as_mut_ptr().add(p * V::WIDTH));
-            }
-            let (early, late) = if UP { (0, HALF) } else { (HALF, 0) };
-            let through_first = increments::<V, S>(block, staged.0.as_ptr().add(early));
-            let through_second = increments::<V, S>(block, staged.0.as_ptr().add(late));
-            let carried = with_states::<V, N, S>(
-                &block.e8,
-                through_first,
-                add_all(through_first, through_second),
+        let r: [[V; S]; HALF] = std::array::from_fn(|j| load_all(block.r[j].as_ptr()));
+        let e8: [[V; S]; N] = std::array::from_fn(|k| load_all(block.e8[k].as_ptr()));
+        let e16: [[V; S]; N] = std::array::from_fn(|k| load_all(block.e16[k].as_ptr()));
+        let mut bad = V::none();
+        let mut tile = Tile([0.0; TILE]);
+        let mut done = 0;
+        while done < work.blocks {
+            let blocks = (work.blocks - done).min(TILE / BLOCK);
+            let at = BLOCK
+                * if UP {
+                    done
+                } else {
+                    work.blocks - done - blocks
+                };
+            bad = take_in::<V>(
+                &mut tile,
+                work.input.add(at),
+                blocks * BLOCK,
+                &work.affine,
+                bad,
             );
-            s = add_all(s, with_states::<V, N, S>(&block.e16, s, carried));
+            for i in 0..blocks {
+                let samples = tile
+                    .0
+                    .as_ptr()
+                    .add(BLOCK * if UP { i } else { blocks - 1 - i });
+                let (early, late) = if UP { (0, HALF) } else { (HALF, 0) };
+                let mut into = [[[V::splat(0.0); S]; 2]; 2];
+                for j in 0..HALF {
+                    let chain = j % V::CHAINS;
+                    let x = [
+                        V::splat(*samples.add(early + j)),
+                        V::splat(*samples.add(late + j)),
+                    ];
+                    for half in 0..2 {
+                        for q in 0..S {
+                            into[chain][half][q] = x[half].mul_add(r[j][q], into[chain][half][q]);
+                        }
+                    }
+                }
+                let into = joined::<V, S>(&into);
+                let carried =
+                    with_states::<V, N, S>(&indices, &e8, into[0], add_all(into[0], into[1]));
+                s = add_all(s, with_states::<V, N, S>(&indices, &e16, s, carried));
+            }
+            done += blocks;
         }
-        for (i, register) in s.iter().enumerate() {
-            register.store(work.state.0.as_mut_ptr().add(i * V::WIDTH));
+        store_all(&s, work.state.0.as_mut_ptr());
+        !V::any(bad)
+    }
+}
+
+/// Brings samples into the tile, less their level; flags those that are not moderate.
+#[inline(always)]
+unsafe fn take_in<V: Lanes>(
+    tile: &mut Tile,
+    input: *const f64,
+    count: usize,
+    affine: &Affine,
+    mut bad: V::Flags,
+) -> V::Flags {
+    unsafe {
+        let (scale, shift) = (V::splat(affine.scale), V::splat(affine.shift));
+        let limit = V::splat(LARGEST);
+        for i in (0..count).step_by(V::WIDTH) {
+            let x = V::load(input.add(i));
+            bad = x.outside(limit, bad);
+            x.mul_add(scale, shift).store(tile.0.as_mut_ptr().add(i));
         }
-        true
+        bad
     }
 }
 
@@ -97,34 +199,31 @@ unsafe fn load_all<V: Lanes, const S: usize>(from: *const f64) -> [V; S] {
 }
 
 #[inline(always)]
+unsafe fn store_all<V: Lanes, const S: usize>(s: &[V; S], to: *mut f64) {
+    for (i, register) in s.iter().enumerate() {
+        unsafe { register.store(to.add(i * V::WIDTH)) };
+    }
+}
+
+#[inline(always)]
 unsafe fn add_all<V: Lanes, const S: usize>(a: [V; S], b: [V; S]) -> [V; S] {
     std::array::from_fn(|i| unsafe { a[i].add(b[i]) })
 }
 
-/// What half a block adds to the states that were at rest.
+/// The sum of both chains of each half.
 #[inline(always)]
-unsafe fn increments<V: Lanes, const S: usize>(
-    block: &crate::signal::lookahead::Block,
-    samples: *const f64,
-) -> [V; S] {
-    unsafe {
-        let x = V::splat(*samples);
-        let mut sum: [V; S] =
-            std::array::from_fn(|i| x.mul(V::load(block.r[0].as_ptr().add(i * V::WIDTH))));
-        for j in 1..HALF {
-            let x = V::splat(*samples.add(j));
-            for (i, sum) in sum.iter_mut().enumerate() {
-                *sum = x.mul_add(V::load(block.r[j].as_ptr().add(i * V::WIDTH)), *sum);
-            }
-        }
-        sum
+unsafe fn joined<V: Lanes, const R: usize>(chains: &[[[V; R]; 2]; 2]) -> [[V; R]; 2] {
+    if V::CHAINS == 1 {
+        return chains[0];
     }
+    std::array::from_fn(|half| unsafe { add_all(chains[0][half], chains[1][half]) })
 }
 
 /// `sum` and the states' own increments, in two chains that run side by side.
 #[inline(always)]
 unsafe fn with_states<V: Lanes, const N: usize, const S: usize>(
-    e: &[[f64; crate::signal::lookahead::WIDE]; crate::signal::matrix::MAX_POLES],
+    indices: &V::Indices,
+    e: &[[V; S]; N],
     s: [V; S],
     sum: [V; S],
 ) -> [V; S] {
@@ -132,57 +231,18 @@ unsafe fn with_states<V: Lanes, const N: usize, const S: usize>(
         let mut even = sum;
         let mut odd = [V::splat(0.0); S];
         for k in 0..N {
-            let state = s[k / V::WIDTH].lane(k % V::WIDTH);
+            let state = s[k / V::WIDTH].lane(indices, k % V::WIDTH);
             for i in 0..S {
-                let column = V::load(e[k].as_ptr().add(i * V::WIDTH));
                 if k == 1 {
-                    odd[i] = state.mul(column);
+                    odd[i] = state.mul(e[k][i]);
                 } else if k % 2 == 0 {
-                    even[i] = state.mul_add(column, even[i]);
+                    even[i] = state.mul_add(e[k][i], even[i]);
                 } else {
-                    odd[i] = state.mul_add(column, odd[i]);
+                    odd[i] = state.mul_add(e[k][i], odd[i]);
                 }
             }
         }
         add_all(even, odd)
-    }
-}
-
-/// The outputs of half a block.
-#[inline(always)]
-unsafe fn outputs<V: Lanes, const N: usize, const S: usize, const P: usize, const UP: bool>(
-    block: &crate::signal::lookahead::Block,
-    s: [V; S],
-    samples: *const f64,
-    output: *mut f64,
-    lift: V,
-) {
-    unsafe {
-        let mut y: [V; P] = [V::splat(0.0); P];
-        // A sample acts on the outputs that are not before it: the registers above or below the diagonal are skipped.
-        for j in 0..HALF {
-            let x = V::splat(*samples.add(j));
-            for (p, y) in y.iter_mut().enumerate() {
-                let skipped = if UP {
-                    (p + 1) * V::WIDTH <= j
-                } else {
-                    p * V::WIDTH > j
-                };
-                if !skipped {
-                    let column = V::load(block.t[j].as_ptr().add(p * V::WIDTH));
-                    *y = x.mul_add(column, *y);
-                }
-            }
-        }
-        for k in 0..N {
-            let state = s[k / V::WIDTH].lane(k % V::WIDTH);
-            for (p, y) in y.iter_mut().enumerate() {
-                *y = state.mul_add(V::load(block.o[k].as_ptr().add(p * V::WIDTH)), *y);
-            }
-        }
-        for (p, y) in y.iter().enumerate() {
-            y.add(lift).store(output.add(p * V::WIDTH));
-        }
     }
 }
 
@@ -196,20 +256,20 @@ macro_rules! on {
                 match (states, order, wanted) {
                     (0..=2, Order::Ascending, true) => filter::<$register, 2, { 2_usize.div_ceil($width) }, P, true>(work),
                     (0..=2, Order::Descending, true) => filter::<$register, 2, { 2_usize.div_ceil($width) }, P, false>(work),
-                    (0..=2, Order::Ascending, false) => advance::<$register, 2, { 2_usize.div_ceil($width) }, P, true>(work),
-                    (0..=2, Order::Descending, false) => advance::<$register, 2, { 2_usize.div_ceil($width) }, P, false>(work),
+                    (0..=2, Order::Ascending, false) => advance::<$register, 2, { 2_usize.div_ceil($width) }, true>(work),
+                    (0..=2, Order::Descending, false) => advance::<$register, 2, { 2_usize.div_ceil($width) }, false>(work),
                     (3..=4, Order::Ascending, true) => filter::<$register, 4, { 4_usize.div_ceil($width) }, P, true>(work),
                     (3..=4, Order::Descending, true) => filter::<$register, 4, { 4_usize.div_ceil($width) }, P, false>(work),
-                    (3..=4, Order::Ascending, false) => advance::<$register, 4, { 4_usize.div_ceil($width) }, P, true>(work),
-                    (3..=4, Order::Descending, false) => advance::<$register, 4, { 4_usize.div_ceil($width) }, P, false>(work),
+                    (3..=4, Order::Ascending, false) => advance::<$register, 4, { 4_usize.div_ceil($width) }, true>(work),
+                    (3..=4, Order::Descending, false) => advance::<$register, 4, { 4_usize.div_ceil($width) }, false>(work),
                     (5..=8, Order::Ascending, true) => filter::<$register, 8, { 8_usize.div_ceil($width) }, P, true>(work),
                     (5..=8, Order::Descending, true) => filter::<$register, 8, { 8_usize.div_ceil($width) }, P, false>(work),
-                    (5..=8, Order::Ascending, false) => advance::<$register, 8, { 8_usize.div_ceil($width) }, P, true>(work),
-                    (5..=8, Order::Descending, false) => advance::<$register, 8, { 8_usize.div_ceil($width) }, P, false>(work),
+                    (5..=8, Order::Ascending, false) => advance::<$register, 8, { 8_usize.div_ceil($width) }, true>(work),
+                    (5..=8, Order::Descending, false) => advance::<$register, 8, { 8_usize.div_ceil($width) }, false>(work),
                     (_, Order::Ascending, true) => filter::<$register, 12, { 12_usize.div_ceil($width) }, P, true>(work),
                     (_, Order::Descending, true) => filter::<$register, 12, { 12_usize.div_ceil($width) }, P, false>(work),
-                    (_, Order::Ascending, false) => advance::<$register, 12, { 12_usize.div_ceil($width) }, P, true>(work),
-                    (_, Order::Descending, false) => advance::<$register, 12, { 12_usize.div_ceil($width) }, P, false>(work),
+                    (_, Order::Ascending, false) => advance::<$register, 12, { 12_usize.div_ceil($width) }, true>(work),
+                    (_, Order::Descending, false) => advance::<$register, 12, { 12_usize.div_ceil($width) }, false>(work),
                 }
             }
         }
