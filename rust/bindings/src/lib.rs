@@ -7,6 +7,7 @@ mod error;
 mod regression;
 mod signal;
 mod stats;
+mod stream;
 
 use pyo3::prelude::*;
 
@@ -21,9 +22,11 @@ mod _core {
     #[pymodule_export]
     use crate::regression::{LineSums, fit_line};
     #[pymodule_export]
-    use crate::signal::{Filter, LowPass, zero_phase};
+    use crate::signal::{Butterworth, ZeroPhase, even, extremes, instruction_sets};
     #[pymodule_export]
     use crate::stats::Moments;
+    #[pymodule_export]
+    use crate::stream::{Bank, Filter, FixedLag};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -57,6 +57,17 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// The same, found in a part that begins at `start`.
+    #[must_use]
+    pub(crate) fn moved(mut self, start: usize) -> Self {
+        if let Self::NonFinite { index, .. } = &mut self {
+            *index += start;
+        }
+        self
+    }
+}
+
 /// Refuses NaN and infinities, naming the first position.
 ///
 /// # Errors

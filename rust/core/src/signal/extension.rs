@@ -108,6 +108,13 @@ impl Around {
         }
     }
 
+    /// Where the second pass starts if the signal stays at its newest sample.
+    pub fn held(&self, first: &System, after: &Vector, newest: f64) -> Vector {
+        let own = apply(first.space.n, &self.q, after);
+        let to_come = self.right_steady.at(newest, 0.0);
+        std::array::from_fn(|i| own[i] + to_come[i])
+    }
+
     /// The record reflected once on each side, for at least `pad` samples; the filter has settled on the chord of the
     /// extension where it begins.
     pub fn settled(&self, first: &System, x: &[f64], pad: usize) -> Starts {

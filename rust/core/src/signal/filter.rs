@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::butterworth::Butterworth;
 use super::lookahead::{BLOCK, State};
-use super::matrix::MAX_POLES;
+use super::matrix::{MAX_POLES, Vector};
+use super::samples::{Sample, Scale};
 use super::simd::{Affine, InstructionSet, Order};
 use super::system::System;
 use crate::error::{Error, require_moderate, require_same_length};
@@ -44,6 +45,9 @@ impl Memory {
         }
     }
 }
+
+/// Samples converted at a time: they stay in the first cache.
+const TILE: usize = 16 * BLOCK;
 
 /// The numbers a filter remembers: the origin's presence, the origin, the states, how many samples wait, those.
 pub const STATE_LEN: usize = 3 + MAX_POLES + BLOCK;
@@ -171,6 +175,63 @@ impl Filter {
         Ok(())
     }
 
+    /// Filters counts or single-precision samples, `factor x + offset` in their unit, into `out`: the same bits as
+    /// [`Self::push_into`] of the converted samples. Nothing is allocated.
+    ///
+    /// # Errors
+    /// As [`Self::push_into`]; the memory is untouched by a refused chunk, `out` then holds nothing of use.
+    pub fn push_samples<T: Sample>(
+        &mut self,
+        x: &[T],
+        scale: Scale,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        require_same_length("out", out, "x", x.len())?;
+        let before = self.memory;
+        for (start, (x, out)) in (0..)
+            .step_by(TILE)
+            .zip(x.chunks(TILE).zip(out.chunks_mut(TILE)))
+        {
+            scale.widen(x, out);
+            if let Err(error) = self.push_in_place(out) {
+                self.memory = before;
+                return Err(error.moved(start));
+            }
+        }
+        Ok(())
+    }
+
+    /// Filters single-precision samples into single precision; all arithmetic between is double.
+    ///
+    /// # Errors
+    /// As [`Self::push_samples`].
+    pub fn push_single(&mut self, x: &[f32], out: &mut [f32]) -> Result<(), Error> {
+        if x.len() != out.len() {
+            return Err(Error::Length {
+                name: "out",
+                expected: format!("{}, as many as x,", x.len()),
+                got: out.len(),
+            });
+        }
+        let before = self.memory;
+        let mut staged = [0.0; TILE];
+        for (start, (x, out)) in (0..)
+            .step_by(TILE)
+            .zip(x.chunks(TILE).zip(out.chunks_mut(TILE)))
+        {
+            let staged = &mut staged[..x.len()];
+            Scale::NONE.widen(x, staged);
+            if let Err(error) = self.push_in_place(staged) {
+                self.memory = before;
+                return Err(error.moved(start));
+            }
+            for (place, y) in out.iter_mut().zip(staged) {
+                *place = *y as f32;
+            }
+        }
+        Ok(())
+    }
+
     /// Filters one chunk into a new vector.
     ///
     /// # Errors
@@ -235,6 +296,15 @@ impl Filter {
         let given = &mut given[..x.len()];
         given.copy_from_slice(x);
         self.wait(origin, lift, given, x);
+    }
+
+    /// The states after the last sample, less the origin.
+    pub(super) fn state_now(&self) -> Vector {
+        let mut state = self.memory.state.vector();
+        for v in &self.memory.waiting[..self.memory.count] {
+            self.system.space.advance(&mut state, *v);
+        }
+        state
     }
 
     /// The memory as plain numbers, to be stored and given to [`Self::restore`].

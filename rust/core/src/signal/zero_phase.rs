@@ -10,6 +10,7 @@ use super::extension::{Around, Starts};
 use super::gustafsson;
 use super::lookahead::Block;
 use super::matrix::Vector;
+use super::samples::{Sample, Scale};
 use super::simd::{Affine, InstructionSet};
 use super::system::System;
 use super::tail::Tail;
@@ -215,6 +216,21 @@ impl ZeroPhase {
             .forward_in_place(&starts.first, subtract(level), x);
         self.backward(&starts, &after, level, x);
         Ok(())
+    }
+
+    /// Filters counts or single-precision samples, `factor x + offset` in their unit, into `out`.
+    ///
+    /// # Errors
+    /// As [`Self::apply`]; `out` then holds nothing of use.
+    pub fn apply_samples<T: Sample>(
+        &self,
+        x: &[T],
+        scale: Scale,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        require_same_length("out", out, "x", x.len())?;
+        scale.widen(x, out);
+        self.apply_in_place(out)
     }
 
     /// Filters records of `length` samples that lie one after the other in `x` into the same places of `out`, on

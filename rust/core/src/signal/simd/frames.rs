@@ -2,7 +2,6 @@
 
 use super::InstructionSet;
 use super::lanes::Lanes;
-use crate::error::LARGEST;
 use crate::signal::section::Solved;
 
 /// The most channels one run takes: two of the widest registers.
@@ -24,8 +23,6 @@ pub struct Frames<'a> {
 
 /// Filters frames of sixteen neighbouring channels in place: the first at `first`, the next `stride` doubles further.
 ///
-/// `descending` runs from the last frame to the first. False if a sample was not of moderate magnitude.
-///
 /// # Panics
 /// Where the last frame does not lie in `samples`: the caller cuts them.
 pub fn run_frames(
@@ -35,10 +32,9 @@ pub fn run_frames(
     first: usize,
     stride: usize,
     frames: usize,
-    descending: bool,
-) -> bool {
+) {
     if frames == 0 {
-        return true;
+        return;
     }
     let end = (frames - 1)
         .checked_mul(stride)
@@ -48,22 +44,17 @@ pub fn run_frames(
         "frames beyond the samples"
     );
     assert!(set.available() && work.sections.len() <= work.state.len());
-    let (start, step) = if descending {
-        (first + (frames - 1) * stride, -stride.cast_signed())
-    } else {
-        (first, stride.cast_signed())
-    };
     // Sound: every frame of sixteen doubles lies in `samples`, checked above, and the set is available.
     unsafe {
-        let at = samples.as_mut_ptr().add(start);
+        let at = samples.as_mut_ptr().add(first);
         match set {
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => on_avx512(work, at, step, frames),
+            InstructionSet::Avx512 => on_avx512(work, at, stride, frames),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => on_avx2(work, at, step, frames),
+            InstructionSet::Avx2 => on_avx2(work, at, stride, frames),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Sse2 => on_sse2(work, at, step, frames),
-            _ => on_scalar(work, at, step, frames),
+            InstructionSet::Sse2 => on_sse2(work, at, stride, frames),
+            _ => on_scalar(work, at, stride, frames),
         }
     }
 }
@@ -73,12 +64,10 @@ pub fn run_frames(
 unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
     work: &mut Frames<'_>,
     at: *mut f64,
-    step: isize,
+    stride: usize,
     frames: usize,
-) -> bool {
+) {
     unsafe {
-        let limit = V::splat(LARGEST);
-        let mut bad = V::none();
         for group in 0..GROUP / (U * V::WIDTH) {
             let lane = group * U * V::WIDTH;
             let load =
@@ -90,10 +79,9 @@ unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
                 std::array::from_fn(|j| std::array::from_fn(|u| load(&work.state[i][j], u)))
             });
             for frame in 0..frames {
-                let place = at.offset(step * frame.cast_signed()).add(lane);
+                let place = at.add(stride * frame + lane);
                 let mut signal: [V; U] = std::array::from_fn(|u| {
                     let x = V::load(place.add(u * V::WIDTH));
-                    bad = x.outside(limit, bad);
                     x.add(origin[u])
                 });
                 for (section, state) in work.sections.iter().zip(&mut state) {
@@ -125,7 +113,6 @@ unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
                 }
             }
         }
-        !V::any(bad)
     }
 }
 
@@ -133,15 +120,15 @@ unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
 macro_rules! on {
     ($name:ident, $register:ty, $registers:literal, $($feature:literal)?) => {
         $(#[target_feature(enable = $feature)])?
-        unsafe fn $name(work: &mut Frames<'_>, at: *mut f64, step: isize, frames: usize) -> bool {
+        unsafe fn $name(work: &mut Frames<'_>, at: *mut f64, stride: usize, frames: usize) {
             unsafe {
                 match work.sections.len() {
-                    0 | 1 => recur::<$register, 1, $registers>(work, at, step, frames),
-                    2 => recur::<$register, 2, $registers>(work, at, step, frames),
-                    3 => recur::<$register, 3, $registers>(work, at, step, frames),
-                    4 => recur::<$register, 4, $registers>(work, at, step, frames),
-                    5 => recur::<$register, 5, $registers>(work, at, step, frames),
-                    _ => recur::<$register, 6, $registers>(work, at, step, frames),
+                    0 | 1 => recur::<$register, 1, $registers>(work, at, stride, frames),
+                    2 => recur::<$register, 2, $registers>(work, at, stride, frames),
+                    3 => recur::<$register, 3, $registers>(work, at, stride, frames),
+                    4 => recur::<$register, 4, $registers>(work, at, stride, frames),
+                    5 => recur::<$register, 5, $registers>(work, at, stride, frames),
+                    _ => recur::<$register, 6, $registers>(work, at, stride, frames),
                 }
             }
         }

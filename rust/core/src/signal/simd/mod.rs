@@ -9,7 +9,8 @@ mod kernel;
 mod lanes;
 
 use super::lookahead::{BLOCK, Block, State};
-pub use frames::{Frames, run_frames};
+
+pub(super) use frames::{Frames, GROUP, GroupState, run_frames};
 
 /// The registers a kernel runs in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -69,7 +70,7 @@ impl InstructionSet {
 
 /// The order in which samples are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub(super) enum Order {
     /// As they lie in memory.
     Ascending,
     /// Against it, with the [`Block::reversed`] matrices.
@@ -78,7 +79,7 @@ pub enum Order {
 
 /// What happens to a sample on its way in and out: `scale x + shift` is filtered, `lift` is added to the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Affine {
+pub(super) struct Affine {
     /// Times the sample.
     pub scale: f64,
     /// Plus this.
@@ -110,7 +111,7 @@ struct Work<'a> {
 
 /// A kernel for one number of states on one instruction set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kernel {
+pub(super) struct Kernel {
     set: InstructionSet,
     states: usize,
 }
