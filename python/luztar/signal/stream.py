@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from .. import _core
-from .._arrays import number, refuse_not_finite, vector, whole_number, writable
+from .._arrays import is_plain, number, refuse_not_finite, vector, whole_number, writable
 from ..errors import ParameterError
 from .design import BandPass, BandStop, Design, HighPass, LowPass
 
@@ -145,6 +145,13 @@ class Filter:
         ParameterError
             The chunk or ``out`` cannot be used; the memory is as it was.
         """
+        if is_plain(chunk) and is_plain(out) and chunk is not out and not np.may_share_memory(chunk, out):
+            try:
+                self._core.push_into(chunk, writable("out", out, chunk.shape))
+            except ParameterError:
+                refuse_not_finite("chunk", chunk)
+                raise
+            return
         if isinstance(out, np.ndarray) and out.dtype == np.float32 and getattr(chunk, "dtype", None) == np.float32:
             self._push_single(chunk, out)
             return

@@ -111,9 +111,9 @@ pub fn instruction_sets() -> Vec<&'static str> {
         .collect()
 }
 
-/// A zero-phase filter, ready to run; boxed, since Python's memory is not aligned to the widest registers.
+/// A zero-phase filter, ready to run.
 #[pyclass(frozen, module = "luztar._core")]
-pub struct ZeroPhase(Box<core::ZeroPhase>);
+pub struct ZeroPhase(core::ZeroPhase);
 
 #[pymethods]
 impl ZeroPhase {
@@ -131,11 +131,11 @@ impl ZeroPhase {
             "matlab" => Edges::Matlab,
             _ => Edges::Gustafsson,
         };
-        Ok(Self(Box::new(if derivative {
+        Ok(Self(if derivative {
             core::ZeroPhase::derivative(&design.design, edges, design.set)?
         } else {
             core::ZeroPhase::on(&design.design, edges, design.set)?
-        })))
+        }))
     }
 
     #[getter]

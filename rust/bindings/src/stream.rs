@@ -10,20 +10,20 @@ use pyo3::prelude::*;
 use crate::error::CoreError;
 use crate::signal::{Butterworth, WORTH_DETACHING};
 
-/// A causal filter with its memory; boxed, since Python's memory is not aligned to the widest registers.
+/// A causal filter with its memory.
 #[pyclass(module = "luztar._core")]
 #[derive(Clone)]
-pub struct Filter(Box<core::Filter>);
+pub struct Filter(core::Filter);
 
 #[pymethods]
 impl Filter {
     #[new]
     fn new(design: &Butterworth, derivative: bool) -> Result<Self, CoreError> {
-        Ok(Self(Box::new(if derivative {
+        Ok(Self(if derivative {
             core::Filter::derivative(design.design, design.set)?
         } else {
             core::Filter::on(design.design, design.set)
-        })))
+        }))
     }
 
     /// The next outputs, or None for anything but a contiguous vector of doubles.
@@ -157,14 +157,14 @@ impl Bank {
 /// Zero phase on a stream, late by a fixed number of samples.
 #[pyclass(module = "luztar._core")]
 #[derive(Clone)]
-pub struct FixedLag(Box<core::FixedLag>);
+pub struct FixedLag(core::FixedLag);
 
 #[pymethods]
 impl FixedLag {
     #[new]
     fn new(design: &Butterworth, delay: usize) -> Result<Self, CoreError> {
         let filter = core::FixedLag::new(&design.design, delay, design.set)?;
-        Ok(Self(Box::new(filter)))
+        Ok(Self(filter))
     }
 
     #[getter]

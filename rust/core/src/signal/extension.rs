@@ -152,26 +152,33 @@ impl Around {
         }
     }
 
-    /// The record, which begins and ends at zero, reflected forever: it repeats every `2 (n - 1)` samples, and so does
-    /// the state.
-    pub fn repeated(&self, first: &System, x: &[f64]) -> Starts {
+    /// The record, which begins and ends at zero, reflected again and again: it repeats every `2 (n - 1)` samples. As
+    /// far as `pad` if that is within one period, else forever: then the state repeats, too.
+    pub fn repeated(&self, first: &System, x: &[f64], pad: usize) -> Starts {
         let (states, n) = (first.space.n, x.len());
-        let period = power(states, &first.space.e, 2 * (n - 1));
+        let period = 2 * (n - 1);
+        // Of the first half of the period, which is the record itself, what lies within the pad.
+        let from = period.saturating_sub(pad).min(n - 1);
         let turned = Affine {
             scale: -1.0,
             ..Affine::NONE
         };
-        // s = A^P s + u, so that (A^P - I) s = -u
-        let closed = |u: &Vector| solve(states, &period, &u.map(|v| -v));
         let mut left = Run::new(first, first.space.b);
-        left.ascending(&first.block, Affine::NONE, x);
+        left.ascending(&first.block, Affine::NONE, &x[from..]);
         left.descending(&self.left, turned, &x[1..n - 1]);
         let mut right = Run::new(first, self.g);
-        right.descending(&self.right_turned, Affine::NONE, x);
+        right.descending(&self.right_turned, Affine::NONE, &x[..n - from]);
         right.ascending(&self.right, turned, &x[1..n - 1]);
+        if pad > period {
+            // s = A^P s + u, so that (A^P - I) s = -u
+            let again = power(states, &first.space.e, period);
+            for run in [&mut left, &mut right] {
+                run.state = solve(states, &again, &run.state.map(|v| -v));
+            }
+        }
         Starts {
-            first: closed(&left.state),
-            rest: Rest::Infinite(closed(&right.state)),
+            first: left.state,
+            rest: Rest::Infinite(right.state),
         }
     }
 

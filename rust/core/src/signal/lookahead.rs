@@ -17,7 +17,6 @@ pub const WIDE: usize = 16;
 
 /// The state of a running filter, as wide as the kernel's registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C, align(64))]
 pub struct State(pub [f64; WIDE]);
 
 impl State {
@@ -39,7 +38,6 @@ impl State {
 
 /// The matrices by columns: the first index is the input's.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C, align(64))]
 pub struct Block {
     /// Sample to outputs of its half block.
     pub t: [[f64; HALF]; HALF],

@@ -333,7 +333,7 @@ impl ZeroPhase {
         }
         if n > 1 {
             x[n - 1] = 0.0;
-            let starts = self.around.repeated(&self.first, x);
+            let starts = self.around.repeated(&self.first, x, self.pad);
             let (after, _) = self.first.forward_in_place(&starts.first, Affine::NONE, x);
             self.backward(&starts, &after, 0.0, x);
         }

@@ -47,6 +47,10 @@ unsafe fn filter<V: Lanes, const N: usize, const S: usize, const P: usize, const
                 &work.affine,
                 bad,
             );
+            fetch_ahead::<V, UP>(work.input.wrapping_add(at));
+            if !std::ptr::eq(work.input, work.output) {
+                fetch_ahead::<V, UP>(work.output.wrapping_add(at));
+            }
             for i in 0..blocks {
                 let place = BLOCK * if UP { i } else { blocks - 1 - i };
                 let samples = tile.0.as_ptr().add(place);
@@ -190,6 +194,19 @@ unsafe fn take_in<V: Lanes>(
             x.mul_add(scale, shift).store(tile.0.as_mut_ptr().add(i));
         }
         bad
+    }
+}
+
+/// Asks for the tile after the next, which may lie beyond the record: a request never faults.
+#[inline(always)]
+unsafe fn fetch_ahead<V: Lanes, const UP: bool>(tile: *const f64) {
+    let ahead = if UP {
+        tile.wrapping_add(2 * TILE)
+    } else {
+        tile.wrapping_sub(2 * TILE)
+    };
+    for line in (0..TILE).step_by(8) {
+        unsafe { V::fetch(ahead.wrapping_add(line)) };
     }
 }
 

@@ -13,6 +13,9 @@ pub(super) trait Lanes: Copy {
     unsafe fn load(from: *const f64) -> Self;
     unsafe fn store(self, to: *mut f64);
     unsafe fn splat(value: f64) -> Self;
+    /// Asks for the cache line of an address, which need not exist.
+    #[inline(always)]
+    unsafe fn fetch(_address: *const f64) {}
     /// One of the doubles in every place; `k` is known where this is inlined.
     unsafe fn lane(self, indices: &Self::Indices, k: usize) -> Self;
     /// What [`Self::lane`] needs, made once outside a loop.
@@ -101,6 +104,10 @@ mod x86 {
                 #[inline(always)]
                 unsafe fn store(self, to: *mut f64) {
                     unsafe { $store(to, self) }
+                }
+                #[inline(always)]
+                unsafe fn fetch(address: *const f64) {
+                    unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) }
                 }
                 #[inline(always)]
                 unsafe fn splat(value: f64) -> Self {
