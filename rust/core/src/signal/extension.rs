@@ -115,40 +115,30 @@ impl Around {
         std::array::from_fn(|i| own[i] + to_come[i])
     }
 
-    /// The record reflected once on each side, for at least `pad` samples; the filter has settled on the chord of the
-    /// extension where it begins.
+    /// The record reflected once on each side, for `pad` samples; the filter has settled on the chord of the extension
+    /// where it begins.
     pub fn settled(&self, first: &System, x: &[f64], pad: usize) -> Starts {
         let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
-        let pad = pad.div_ceil(16) * 16;
-        let far = level - x[pad];
-        let mut left = State::from_vector(&first.steady.at(far, -far / pad as f64));
         let reflected = |shift| Affine {
             scale: -1.0,
             shift,
             lift: 0.0,
         };
-        first.kernel.advance(
-            &self.left,
-            &mut left,
-            Order::Descending,
-            reflected(level),
-            &x[1..=pad],
-        );
+        let far = level - x[pad];
+        let mut left = Run::new(first, first.space.b);
+        left.state = first.steady.at(far, -far / pad as f64);
+        left.descending(&self.left, reflected(level), &x[1..=pad]);
 
         let end = (last - level) + last;
         let far = end - x[n - 1 - pad];
-        let slope = ((last - level) - far) / pad as f64;
-        let mut right = State::from_vector(&self.right_steady.at(far, slope));
-        first.kernel.advance(
-            &self.right,
-            &mut right,
-            Order::Ascending,
-            reflected(end),
-            &x[n - 1 - pad..n - 1],
-        );
+        let mut right = Run::new(first, self.g);
+        right.state = self
+            .right_steady
+            .at(far, ((last - level) - far) / pad as f64);
+        right.ascending(&self.right, reflected(end), &x[n - 1 - pad..n - 1]);
         Starts {
-            first: left.vector(),
-            rest: Rest::Infinite(right.vector()),
+            first: left.state,
+            rest: Rest::Infinite(right.state),
         }
     }
 
@@ -221,13 +211,16 @@ impl<'a> Run<'a> {
     fn ascending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
         let (blocks, rest) = x.split_at(x.len() / 16 * 16);
         self.blocks(block, Order::Ascending, affine, blocks);
-        rest.iter().for_each(|v| self.step(affine.scale * v));
+        rest.iter()
+            .for_each(|v| self.step(affine.scale * v + affine.shift));
     }
 
     fn descending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
         let (rest, blocks) = x.split_at(x.len() % 16);
         self.blocks(block, Order::Descending, affine, blocks);
-        rest.iter().rev().for_each(|v| self.step(affine.scale * v));
+        rest.iter()
+            .rev()
+            .for_each(|v| self.step(affine.scale * v + affine.shift));
     }
 
     fn blocks(&mut self, block: &Block, order: Order, affine: Affine, x: &[f64]) {

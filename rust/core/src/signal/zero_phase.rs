@@ -277,7 +277,7 @@ impl ZeroPhase {
 
     /// Whether the record is shorter than its extension, so that the closed form is due.
     fn is_closed(&self, length: usize) -> bool {
-        matches!(self.edges, Edges::Settled { .. }) && self.pad.div_ceil(16) * 16 > length - 1
+        matches!(self.edges, Edges::Settled { .. }) && self.pad >= length
     }
 
     fn require_length(&self, length: usize) -> Result<(), Error> {
