@@ -14,7 +14,7 @@ from .design import CutoffAt, Design, Edges, LowPass, Missing
 from .missing import held, split
 from .stream import Filter
 
-# A scale of counts, (units per count, value of zero counts).
+# What a scale is for.
 _COUNTS = (np.dtype(np.int16), np.dtype(np.int32), np.dtype(np.float32))
 
 
@@ -269,6 +269,7 @@ def _vector(ready: _core.ZeroPhase, x: np.ndarray, out: np.ndarray | None) -> np
 def _counts(ready: _core.ZeroPhase, x: Any, scale: tuple[float, float], out: np.ndarray | None) -> np.ndarray:
     """Filter a vector of counts."""
     counts = np.asarray(x)
+    counts = counts.astype(counts.dtype.newbyteorder("="), copy=False)
     if counts.dtype not in _COUNTS or counts.ndim != 1 or counts.size == 0:
         raise ParameterError(
             f"x is {counts.dtype} {counts.shape}", "x", "With a scale give a vector of int16, int32 or float32."

@@ -196,7 +196,7 @@ class Filter:
             Another type or shape.
         """
         counts = np.asarray(counts)
-        if counts.ndim != 1 or counts.dtype not in (np.int16, np.int32):
+        if counts.ndim != 1 or counts.dtype.kind != "i" or counts.dtype.itemsize not in (2, 4):
             raise ParameterError(
                 f"counts is {counts.dtype} {counts.shape}", "counts", "Give a vector of int16 or int32."
             )

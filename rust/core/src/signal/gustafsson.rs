@@ -23,7 +23,8 @@ pub fn filter(filter: &ZeroPhase, x: &mut [f64]) {
     let forward = |v: &mut [f64]| first.forward_in_place(&rest, Affine::NONE, v);
     let backward = |v: &mut [f64]| second.backward_in_place(&filter.turned, &rest, Affine::NONE, v);
 
-    let level = x[0];
+    // Where a constant passes it passes both orders alike; where not, the answer depends on it.
+    let level = x[0] * second.level_gain;
     x.iter_mut().for_each(|v| *v -= level);
     let mut forward_backward = x.to_vec();
     forward(&mut forward_backward);
@@ -63,12 +64,11 @@ pub fn filter(filter: &ZeroPhase, x: &mut [f64]) {
         std::array::from_fn(|i| if i < states { solution[from + i] } else { 0.0 })
     };
     first.forward_in_place(&state(0), Affine::NONE, x);
-    let lift = level * second.level_gain;
     second.backward_in_place(
         &filter.turned,
         &state(states),
         Affine {
-            lift,
+            lift: level,
             ..Affine::NONE
         },
         x,
