@@ -45,6 +45,25 @@ enum Rest {
 }
 
 impl Starts {
+    /// The record reflected for `pad` samples on each side, and a constant beyond.
+    pub fn padded(first: &System, x: &[f64], pad: usize) -> Self {
+        let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
+        let mut state = first.steady.at(level - x[pad], 0.0);
+        for v in x[1..=pad].iter().rev() {
+            first.space.advance(&mut state, level - v);
+        }
+        let end = (last - level) + last;
+        let extension = x[n - 1 - pad..n - 1]
+            .iter()
+            .rev()
+            .map(|v| end - v)
+            .collect();
+        Self {
+            first: state,
+            rest: Rest::Padded(extension),
+        }
+    }
+
     /// The state the second pass starts with, from the state `after` the first.
     pub fn second(
         &self,
@@ -171,25 +190,6 @@ impl Around {
             rest: Rest::Infinite(right.state),
         }
     }
-
-    /// The record reflected for `pad` samples on each side, and a constant beyond.
-    pub fn padded(&self, first: &System, x: &[f64], pad: usize) -> Starts {
-        let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
-        let mut state = first.steady.at(level - x[pad], 0.0);
-        for v in x[1..=pad].iter().rev() {
-            first.space.advance(&mut state, level - v);
-        }
-        let end = (last - level) + last;
-        let extension = x[n - 1 - pad..n - 1]
-            .iter()
-            .rev()
-            .map(|v| end - v)
-            .collect();
-        Starts {
-            first: state,
-            rest: Rest::Padded(extension),
-        }
-    }
 }
 
 /// A state on its way over parts of any length, from rest.
@@ -211,16 +211,17 @@ impl<'a> Run<'a> {
     fn ascending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
         let (blocks, rest) = x.split_at(x.len() / 16 * 16);
         self.blocks(block, Order::Ascending, affine, blocks);
-        rest.iter()
-            .for_each(|v| self.step(affine.scale * v + affine.shift));
+        for v in rest {
+            self.step(affine.scale * v + affine.shift);
+        }
     }
 
     fn descending(&mut self, block: &Block, affine: Affine, x: &[f64]) {
         let (rest, blocks) = x.split_at(x.len() % 16);
         self.blocks(block, Order::Descending, affine, blocks);
-        rest.iter()
-            .rev()
-            .for_each(|v| self.step(affine.scale * v + affine.shift));
+        for v in rest.iter().rev() {
+            self.step(affine.scale * v + affine.shift);
+        }
     }
 
     fn blocks(&mut self, block: &Block, order: Order, affine: Affine, x: &[f64]) {

@@ -25,7 +25,9 @@ pub fn filter(filter: &ZeroPhase, x: &mut [f64]) {
 
     // Where a constant passes it passes both orders alike; where not, the answer depends on it.
     let level = x[0] * second.level_gain;
-    x.iter_mut().for_each(|v| *v -= level);
+    for v in x.iter_mut() {
+        *v -= level;
+    }
     let mut forward_backward = x.to_vec();
     forward(&mut forward_backward);
     backward(&mut forward_backward);

@@ -80,7 +80,7 @@ impl System {
                 .filter_in_place(&self.block, &mut state, Order::Ascending, affine, blocks);
         let given: [f64; BLOCK] = std::array::from_fn(|i| last.get(i).copied().unwrap_or(0.0));
         let (after, rest_good) = self.rest(&state, affine, &given[..last.len()], |y| {
-            last.copy_from_slice(y)
+            last.copy_from_slice(y);
         });
         good &= rest_good;
         (after, good)

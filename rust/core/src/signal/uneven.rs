@@ -36,7 +36,7 @@ pub fn even(
     require_finite("time", time)?;
     require_finite("x", x)?;
     require_positive("sample_rate_hz", sample_rate_hz)?;
-    if !(max_gap_s > 0.0) {
+    if max_gap_s.is_nan() || max_gap_s <= 0.0 {
         return Err(Error::OutOfRange {
             name: "max_gap_s",
             value: max_gap_s,

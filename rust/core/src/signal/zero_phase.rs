@@ -1,7 +1,7 @@
 //! Forward and backward over a record: zero phase, with edges that are said and defined.
 //!
 //! Two passes over the result's own memory; the extensions beyond the ends are read from the record itself and act only
-//! through the state a pass starts with ([`super::extension`]).
+//! through the state a pass starts with (see `extension`).
 
 use super::anti_alias::AntiAlias;
 use super::butterworth::{Butterworth, Passes, require_tolerance};
@@ -299,7 +299,7 @@ impl ZeroPhase {
     fn starts(&self, x: &[f64]) -> Starts {
         match self.edges {
             Edges::Settled { .. } => self.around.settled(&self.first, x, self.pad),
-            _ => self.around.padded(&self.first, x, self.pad),
+            _ => Starts::padded(&self.first, x, self.pad),
         }
     }
 

@@ -73,7 +73,7 @@ impl Lanes for f64 {
     }
     #[inline(always)]
     unsafe fn outside(self, limit: Self, before: bool) -> bool {
-        before | !(self.abs() <= limit)
+        before | (self.abs() > limit) | self.is_nan()
     }
     #[inline(always)]
     unsafe fn any(flags: bool) -> bool {

@@ -1,8 +1,16 @@
 //! The block kernel in the registers of the processor at hand: the only place of the crate with unsafe code.
 //!
-//! One generic kernel ([`kernel`]) is compiled for every instruction set over the registers of [`lanes`]; which one runs
-//! is a value ([`InstructionSet`]), found once per design and never global.
+//! One generic kernel (`kernel`) is compiled for every instruction set over the registers of `lanes`; which one runs is
+//! a value ([`InstructionSet`]), found once per design and never global.
 #![allow(unsafe_code)]
+// A register passed by value through a call is a register lost: everything here is one function after inlining, its
+// loops of known length are unrolled, and the intrinsics come by the dozen.
+#![allow(
+    clippy::inline_always,
+    clippy::needless_range_loop,
+    clippy::needless_pass_by_value,
+    clippy::wildcard_imports
+)]
 
 mod frames;
 mod kernel;
