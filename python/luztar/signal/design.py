@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -19,26 +19,6 @@ InstructionSet = Literal["auto", "scalar", "sse2", "avx2", "avx512"]
 
 # What is left of the filter's memory where an extended edge begins: below the 24 bits of an acquisition card.
 EDGE_TOLERANCE = 1e-9
-# Designs kept ready: a program uses a handful, each a few kilobytes.
-_KEPT = 64
-
-
-@lru_cache(_KEPT, typed=True)
-def _designed(
-    band: str,
-    poles: int,
-    low_hz: float,
-    high_hz: float,
-    sample_rate_hz: float,
-    passes: tuple[bool, bool],
-    instruction_set: str,
-) -> _core.Butterworth:
-    return _core.Butterworth(poles, band, low_hz, high_hz, sample_rate_hz, passes, instruction_set)
-
-
-@lru_cache(_KEPT)
-def _prepared(design: _core.Butterworth, edges: str, derivative: bool) -> _core.ZeroPhase:
-    return _core.ZeroPhase(design, edges, EDGE_TOLERANCE, derivative)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,10 +36,17 @@ class Design:
     def __post_init__(self) -> None:
         self._design()
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
     def _ends(self) -> tuple[float, float]:
         raise NotImplementedError
 
     def _design(self) -> _core.Butterworth:
+        return self._made
+
+    @cached_property
+    def _made(self) -> _core.Butterworth:
         poles = whole_number("poles", self.poles, 1, 12)
         low_hz, high_hz = self._ends()
         sample_rate_hz = number("sample_rate_hz", self.sample_rate_hz)
@@ -71,12 +58,21 @@ class Design:
                 f"instruction_set is {self.instruction_set!r}", "instruction_set", f"This processor has {known}."
             )
         passes = (bool(self.zero_phase), self.cutoff_at == "overall")
-        return _designed(self._band, poles, low_hz, high_hz, sample_rate_hz, passes, self.instruction_set)
+        return _core.Butterworth(poles, self._band, low_hz, high_hz, sample_rate_hz, passes, self.instruction_set)
 
     def _both_ways(self, edges: Edges, derivative: bool = False) -> _core.ZeroPhase:
+        try:
+            return self._ready[edges, derivative]
+        except (KeyError, TypeError):  # not yet, or not a word
+            pass
         if edges not in ("settled", "scipy", "matlab", "gust"):
             raise ParameterError(f"edges is {edges!r}", "edges", "Give 'settled', 'scipy', 'matlab' or 'gust'.")
-        return _prepared(self._design(), edges, derivative)
+        ready = _core.ZeroPhase(self._design(), edges, EDGE_TOLERANCE, derivative)
+        return self._ready.setdefault((edges, derivative), ready)
+
+    @cached_property
+    def _ready(self) -> dict[tuple[str, bool], _core.ZeroPhase]:
+        return {}
 
     def describe(self) -> str:
         """Return poles, passes, slope, cut-off, phase and settling time in words."""

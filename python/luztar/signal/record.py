@@ -228,7 +228,12 @@ def _run(
     rows, shape = rows_along("x", x, axis, finite=False)
     if missing == "hold":
         rows = held(rows)
-    y = np.empty_like(rows)
+    straight = out is not None and axis in (-1, len(shape) - 1) and out is not x
+    if straight and writable("out", out, shape, contiguous=False).flags.c_contiguous:
+        straight = not np.may_share_memory(rows, out)
+    else:
+        straight = False
+    y = out.reshape(rows.shape) if straight and out is not None else np.empty_like(rows)
     if missing == "split":
         split(rows, y, ready.apply)
     else:
@@ -237,6 +242,8 @@ def _run(
         except ParameterError:
             refuse_not_finite("x", np.asarray(x))
             raise
+    if straight and out is not None:
+        return out
     y = np.moveaxis(y.reshape(shape), -1, axis)
     if out is None:
         return np.ascontiguousarray(y)
@@ -246,24 +253,21 @@ def _run(
 
 def _vector(ready: _core.ZeroPhase, x: np.ndarray, out: np.ndarray | None) -> np.ndarray:
     """Filter the usual case without a detour."""
+    y = np.empty(x.shape) if out is None else out
     try:
-        if out is None:
-            out = np.empty_like(x)
-            ready.apply(x, out)
-        elif out is x:
+        if ready.apply_plain(x, y):
+            return y
+        if out is x:
             ready.apply_in_place(writable("out", out, x.shape))
-        elif writable("out", out, x.shape, contiguous=False).flags.c_contiguous and not np.may_share_memory(x, out):
-            ready.apply(x, writable("out", out, x.shape))
         else:
-            y = np.empty_like(x)
-            ready.apply(x, y)
-            out[...] = y
+            ready.apply(x, y := np.empty(x.shape))
+            writable("out", out, x.shape, contiguous=False)[...] = y
     except ParameterError:
         if x.size == 0:
             raise ParameterError(f"x has the shape {x.shape}", "x", "Give at least one sample.") from None
         refuse_not_finite("x", x)
         raise
-    return out
+    return y if out is None else out
 
 
 def _counts(ready: _core.ZeroPhase, x: Any, scale: tuple[float, float], out: np.ndarray | None) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from .. import _core
-from .._arrays import is_plain, number, refuse_not_finite, vector, whole_number, writable
+from .._arrays import number, refuse_not_finite, vector, whole_number, writable
 from ..errors import ParameterError
 from .design import BandPass, BandStop, Design, HighPass, LowPass
 
@@ -60,7 +60,7 @@ class Filter:
     array([1.5, 1.5])
     """
 
-    __slots__ = ("_core", "_derivative", "_design", "_push")
+    __slots__ = ("_core", "_derivative", "_design", "_push", "_push_plain")
 
     def __init__(self, *, poles: int = 4, cutoff_hz: float, sample_rate_hz: float) -> None:
         self._make(LowPass(poles=poles, cutoff_hz=cutoff_hz, sample_rate_hz=sample_rate_hz, zero_phase=False), False)
@@ -68,7 +68,7 @@ class Filter:
     def _make(self, design: Design, derivative: bool, core: _core.Filter | None = None) -> Self:
         self._design, self._derivative = design, derivative
         self._core = core or _core.Filter(design._design(), derivative)
-        self._push = self._core.push
+        self._push, self._push_plain = self._core.push, self._core.push_plain
         return self
 
     @classmethod
@@ -145,13 +145,12 @@ class Filter:
         ParameterError
             The chunk or ``out`` cannot be used; the memory is as it was.
         """
-        if is_plain(chunk) and is_plain(out) and chunk is not out and not np.may_share_memory(chunk, out):
-            try:
-                self._core.push_into(chunk, writable("out", out, chunk.shape))
-            except ParameterError:
-                refuse_not_finite("chunk", chunk)
-                raise
-            return
+        try:
+            if self._push_plain(chunk, out):
+                return
+        except ParameterError:
+            refuse_not_finite("chunk", chunk)
+            raise
         if isinstance(out, np.ndarray) and out.dtype == np.float32 and getattr(chunk, "dtype", None) == np.float32:
             self._push_single(chunk, out)
             return

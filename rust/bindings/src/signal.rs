@@ -3,7 +3,7 @@
 use luztar::signal::{self as core, Band, CutoffAt, Edges, InstructionSet, Passes, Scale, uneven};
 use numpy::{
     PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1,
-    PyReadwriteArray2,
+    PyReadwriteArray2, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
@@ -11,6 +11,22 @@ use crate::error::CoreError;
 
 /// Below this many samples releasing the interpreter costs more than it gives: a few microseconds of work.
 pub const WORTH_DETACHING: usize = 4096;
+
+/// Two contiguous vectors of doubles apart from each other, the second writable; None for anything else.
+pub fn plain<'py>(
+    x: &Bound<'py, PyAny>,
+    out: &Bound<'py, PyAny>,
+) -> Option<(PyReadonlyArray1<'py, f64>, PyReadwriteArray1<'py, f64>)> {
+    let (x, out) = (
+        x.cast::<PyArray1<f64>>().ok()?,
+        out.cast::<PyArray1<f64>>().ok()?,
+    );
+    let usable = |array: &Bound<'py, PyArray1<f64>>| array.is_c_contiguous() && array.is_aligned();
+    if !usable(x) || !usable(out) || x.len() != out.len() {
+        return None;
+    }
+    Some((x.try_readonly().ok()?, out.try_readwrite().ok()?))
+}
 
 /// A Butterworth design.
 #[pyclass(frozen, module = "luztar._core")]
@@ -159,6 +175,20 @@ impl ZeroPhase {
             return Ok(self.0.apply(x, out).map_err(CoreError)?);
         }
         Ok(py.detach(|| self.0.apply(x, out)).map_err(CoreError)?)
+    }
+
+    /// Whether `x` and `out` were contiguous vectors of doubles apart from each other, and were filtered.
+    fn apply_plain(
+        &self,
+        py: Python<'_>,
+        x: &Bound<'_, PyAny>,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<bool> {
+        let Some((x, out)) = plain(x, out) else {
+            return Ok(false);
+        };
+        self.apply(py, x, out)?;
+        Ok(true)
     }
 
     fn apply_in_place(&self, py: Python<'_>, mut x: PyReadwriteArray1<'_, f64>) -> PyResult<()> {

@@ -8,7 +8,7 @@ use numpy::{
 use pyo3::prelude::*;
 
 use crate::error::CoreError;
-use crate::signal::{Butterworth, WORTH_DETACHING};
+use crate::signal::{Butterworth, WORTH_DETACHING, plain};
 
 /// A causal filter with its memory.
 #[pyclass(module = "luztar._core")]
@@ -55,6 +55,20 @@ impl Filter {
             return Ok(self.0.push_into(x, out).map_err(CoreError)?);
         }
         Ok(py.detach(|| self.0.push_into(x, out)).map_err(CoreError)?)
+    }
+
+    /// Whether `x` and `out` were contiguous vectors of doubles apart from each other, and were filtered.
+    fn push_plain(
+        &mut self,
+        py: Python<'_>,
+        x: &Bound<'_, PyAny>,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<bool> {
+        let Some((x, out)) = plain(x, out) else {
+            return Ok(false);
+        };
+        self.push_into(py, x, out)?;
+        Ok(true)
     }
 
     fn push_in_place(&mut self, py: Python<'_>, mut x: PyReadwriteArray1<'_, f64>) -> PyResult<()> {

@@ -1,0 +1,247 @@
+"""Filters against scipy, in one run on one machine: `OPENBLAS_NUM_THREADS=1 python benches/bench_signal.py`.
+
+Every repeat times both in turn; a row gives the median of the ratios, the nanoseconds per sample (median and least) of
+ours, and how many plain copies of the same samples that is. Build with ``maturin develop --release`` first. `--quick`
+makes fewer repeats; other work on the machine shows in the longest records, which wait for memory.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy import signal as scipy_signal
+
+from luztar import signal
+
+RATE_HZ, CUTOFF_HZ, POLES = 1000.0, 6.0, 4
+CHUNK = 64
+# A repeat lasts at least this long, so that the clock's step does not show.
+LEAST_S = 2e-3
+
+
+@dataclass
+class Row:
+    """One line of the table."""
+
+    work: str
+    peer: str
+    asked: str
+    ratio: float
+    ours_ns: float
+    least_ns: float
+    peer_ns: float
+    copies: float
+
+
+def seconds(call: Callable[[], object], times: int) -> float:
+    """Return the seconds of one call, the mean over a burst."""
+    started = time.perf_counter()
+    for _ in range(times):
+        call()
+    return (time.perf_counter() - started) / times
+
+
+def burst(call: Callable[[], object]) -> int:
+    """Return how many calls make a repeat."""
+    call()
+    return max(1, round(LEAST_S / seconds(call, 1)))
+
+
+def compare(
+    work: str,
+    asked: str,
+    ours: Callable[[], object],
+    peer: Callable[[], object],
+    copy: Callable[[], object],
+    samples: int,
+    repeats: int,
+    against: str = "sosfiltfilt",
+) -> Row:
+    """Time ours, the peer and a copy in turn."""
+    calls = [(call, burst(call)) for call in (ours, peer, copy)]
+    taken = [[seconds(call, times) for call, times in calls] for _ in range(repeats)]
+    nano = 1e9 / samples
+    return Row(
+        work,
+        against,
+        asked,
+        statistics.median(p / o for o, p, _ in taken),
+        statistics.median(o for o, _, _ in taken) * nano,
+        min(o for o, _, _ in taken) * nano,
+        statistics.median(p for _, p, _ in taken) * nano,
+        statistics.median(o / c for o, _, c in taken),
+    )
+
+
+def records(repeats: int) -> list[Row]:
+    """One channel, forward and backward."""
+    sos = scipy_signal.butter(POLES, CUTOFF_HZ, fs=RATE_HZ, output="sos")
+    rows = []
+    for n in (1000, 1_000_000, 10_000_000):
+        x = 100 + np.random.default_rng(0).standard_normal(n)
+        out = np.empty_like(x)
+        asked = {1000: ("20", "20"), 1_000_000: ("10", "6"), 10_000_000: ("10", "6")}[n]
+        fresh_asked = {10_000_000: ("8", "5")}.get(n, ("", ""))
+        for name, least, fresh_least in zip(("avx512", "avx2"), asked, fresh_asked, strict=True):
+            if name not in signal.instruction_sets():
+                continue
+            design = signal.LowPass(poles=POLES, cutoff_hz=CUTOFF_HZ, sample_rate_hz=RATE_HZ, instruction_set=name)
+            few = repeats if n < 10_000_000 else max(5, repeats // 3)
+            rows.append(
+                compare(
+                    f"zero phase, {n:.0e} samples, out=, {name}",
+                    least if n > 1000 or name == "avx512" else "",
+                    partial(signal.zero_phase, x, design=design, out=out),
+                    partial(scipy_signal.sosfiltfilt, sos, x),
+                    partial(np.copyto, out, x),
+                    n,
+                    few,
+                )
+            )
+            rows.append(
+                compare(
+                    f"zero phase, {n:.0e} samples, fresh, {name}",
+                    fresh_least,
+                    partial(signal.zero_phase, x, design=design),
+                    partial(scipy_signal.sosfiltfilt, sos, x),
+                    x.copy,
+                    n,
+                    few,
+                )
+            )
+        if n == 1000:
+            rows.append(
+                compare(
+                    "the same by cut-off, no design given",
+                    "20",
+                    partial(signal.zero_phase, x, sample_rate_hz=RATE_HZ, cutoff_hz=CUTOFF_HZ),
+                    partial(scipy_signal.sosfiltfilt, sos, x),
+                    x.copy,
+                    n,
+                    repeats,
+                )
+            )
+    return rows
+
+
+def channels(repeats: int) -> list[Row]:
+    """Sixteen channels."""
+    sos = scipy_signal.butter(POLES, CUTOFF_HZ, fs=RATE_HZ, output="sos")
+    x = 100 + np.random.default_rng(0).standard_normal((16, 1_000_000))
+    out = np.empty_like(x)
+    design = signal.LowPass(poles=POLES, cutoff_hz=CUTOFF_HZ, sample_rate_hz=RATE_HZ)
+    few = max(3, repeats // 8)
+    rows = [
+        compare(
+            f"16 channels x 1e6, {threads} thread{'s' if threads > 1 else ''}",
+            "14" if threads == 2 else "",
+            partial(signal.zero_phase, x, design=design, threads=threads, out=out),
+            lambda: scipy_signal.sosfiltfilt(sos, x),
+            lambda: np.copyto(out, x),
+            x.size,
+            few,
+        )
+        for threads in (1, 2)
+    ]
+    frames = np.ascontiguousarray(x[:, :200_000].T)
+    bank = signal.FilterBank(causal_design(), 16)
+    zi = np.repeat(scipy_signal.sosfilt_zi(sos)[:, :, np.newaxis], 16, axis=2)
+    rows.append(
+        compare(
+            "bank: 16 channels in frames, causal, in place",
+            "",
+            lambda: bank.push_in_place(frames),
+            lambda: scipy_signal.sosfilt(sos, frames, axis=0, zi=zi),
+            lambda: np.copyto(out[:, :200_000].reshape(-1)[: frames.size].reshape(frames.shape), frames),
+            frames.size,
+            few * 3,
+            "sosfilt + zi",
+        )
+    )
+    return rows
+
+
+def causal_design() -> signal.LowPass:
+    """Return the design of the streams."""
+    return signal.LowPass(poles=POLES, cutoff_hz=CUTOFF_HZ, sample_rate_hz=RATE_HZ, zero_phase=False)
+
+
+def streams(repeats: int) -> list[Row]:
+    """Chunks with state."""
+    sos = scipy_signal.butter(POLES, CUTOFF_HZ, fs=RATE_HZ, output="sos")
+    state = scipy_signal.sosfilt_zi(sos)
+
+    def peer(chunk: np.ndarray) -> np.ndarray:
+        nonlocal state
+        y, state = scipy_signal.sosfilt(sos, chunk, zi=state)
+        return y
+
+    rows = []
+    for length in (10, CHUNK, 1024):
+        chunk = 100 + np.random.default_rng(0).standard_normal(length)
+        out = np.empty_like(chunk)
+        f, g = signal.Filter.of(causal_design()), signal.Filter.of(causal_design())
+        asked = "30" if length == CHUNK else ""
+        for name, ours in (("push", partial(f.push, chunk)), ("push_into", partial(g.push_into, chunk, out))):
+            rows.append(
+                compare(
+                    f"causal chunks of {length}, {name}",
+                    asked,
+                    ours,
+                    partial(peer, chunk),
+                    partial(np.copyto, out, chunk),
+                    length,
+                    repeats,
+                    "sosfilt + zi",
+                )
+            )
+    return rows
+
+
+def two_threads() -> float:
+    """Return how many times as fast two filters on two threads are as both one after the other."""
+    x = np.random.default_rng(0).standard_normal(2_000_000)
+    pairs = [(signal.Filter.of(causal_design()), np.empty_like(x)) for _ in range(2)]
+    ratios = []
+    for _ in range(15):
+        started = time.perf_counter()
+        for f, out in pairs:
+            f.push_into(x, out)
+        between = time.perf_counter()
+        running = [threading.Thread(target=f.push_into, args=(x, out)) for f, out in pairs]
+        for thread in running:
+            thread.start()
+        for thread in running:
+            thread.join()
+        ratios.append((between - started) / (time.perf_counter() - between))
+    return statistics.median(ratios)
+
+
+def main() -> None:
+    """Print the table."""
+    repeats = 8 if "--quick" in sys.argv else 25
+    print(
+        f"instruction sets: {', '.join(signal.instruction_sets())}; {POLES} poles, {CUTOFF_HZ:g} Hz at {RATE_HZ:g} Hz\n"
+    )
+    print("| work | against | asked | ratio | ours ns/sample (least) | peer ns/sample | plain copies |")
+    print("|---|---|---|---|---|---|---|")
+    for row in (*records(repeats), *channels(repeats), *streams(repeats)):
+        print(
+            f"| {row.work} | {row.peer} | {row.asked and row.asked + 'x'} | {row.ratio:.1f}x "
+            f"| {row.ours_ns:.2f} ({row.least_ns:.2f}) | {row.peer_ns:.1f} | {row.copies:.1f} |"
+        )
+    chunk = np.ones(10)
+    f = signal.Filter.of(causal_design())
+    each = min(seconds(lambda: f.push(chunk), 5000) for _ in range(repeats))
+    print(f"\npush of 10 samples: {1e9 * each:.0f} ns in all; two filters on two threads: {two_threads():.2f}x")
+
+
+if __name__ == "__main__":
+    main()
