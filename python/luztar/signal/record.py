@@ -225,6 +225,8 @@ def _run(
     threads = whole_number("threads", threads, 1, 1024)
     if scale is not None:
         return _counts(ready, x, scale, out)
+    if missing == "raise" and axis == 0 and isinstance(x, np.ndarray) and x.ndim == 2 and x.dtype.kind in "fiu":
+        return _frames(ready, x, out)
     rows, shape = rows_along("x", x, axis, finite=False)
     if missing == "hold":
         rows = held(rows)
@@ -268,6 +270,27 @@ def _vector(ready: _core.ZeroPhase, x: np.ndarray, out: np.ndarray | None) -> np
         refuse_not_finite("x", x)
         raise
     return y if out is None else out
+
+
+def _frames(ready: _core.ZeroPhase, x: np.ndarray, out: np.ndarray | None) -> np.ndarray:
+    """Filter the columns of a table as they lie."""
+    rows_along("x", x[:1], 0, finite=False)
+    in_place = out is not None and writable("out", out, x.shape, contiguous=False).flags.c_contiguous
+    y = out if in_place and out is not None else np.empty(x.shape)
+    # What is refused must be found before x is overwritten by its own result.
+    if np.may_share_memory(x, y):
+        refuse_not_finite("x", x)
+    if y is not x:
+        np.copyto(y, x)
+    try:
+        ready.apply_frames(y)
+    except ParameterError:
+        refuse_not_finite("x", x)
+        raise
+    if out is None or in_place:
+        return y
+    out[...] = y
+    return out
 
 
 def _counts(ready: _core.ZeroPhase, x: Any, scale: tuple[float, float], out: np.ndarray | None) -> np.ndarray:

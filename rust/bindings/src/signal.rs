@@ -210,6 +210,14 @@ impl ZeroPhase {
         Ok(done.map_err(CoreError)?)
     }
 
+    /// Filters the columns of `frames` in place.
+    fn apply_frames(&self, py: Python<'_>, mut frames: PyReadwriteArray2<'_, f64>) -> PyResult<()> {
+        let channels = frames.as_array().ncols();
+        let frames = frames.as_slice_mut()?;
+        let done = py.detach(|| self.0.apply_frames(frames, channels));
+        Ok(done.map_err(CoreError)?)
+    }
+
     /// Filters counts or single-precision samples, `factor x + offset` in their unit.
     fn apply_samples(
         &self,

@@ -20,6 +20,7 @@ mod tail;
 pub mod uneven;
 mod words;
 pub mod zero_phase;
+mod zero_phase_frames;
 
 pub use anti_alias::AntiAlias;
 pub use bank::Bank;

@@ -149,7 +149,7 @@ impl Bank {
             origin: &origin,
         };
         if width == GROUP {
-            run_frames(self.set, &mut work, part, first, stride, count);
+            run_frames(self.set, &mut work, part, first, stride, count, false);
             return;
         }
         let mut staged = [[0.0; GROUP]; TILE];
@@ -164,6 +164,7 @@ impl Bank {
             0,
             GROUP,
             count,
+            false,
         );
         for (frame, row) in staged.iter().zip(part.chunks_exact_mut(stride)) {
             row[first..first + width].copy_from_slice(&frame[..width]);

@@ -137,24 +137,30 @@ impl Around {
     /// The record reflected once on each side, for `pad` samples; the filter has settled on the chord of the extension
     /// where it begins.
     pub fn settled(&self, first: &System, x: &[f64], pad: usize) -> Starts {
-        let (n, level, last) = (x.len(), x[0], x[x.len() - 1]);
+        self.settled_ends(first, &x[..=pad], &x[x.len() - 1 - pad..])
+    }
+
+    /// [`Self::settled`] from the first and the last `pad + 1` samples alone.
+    pub fn settled_ends(&self, first: &System, head: &[f64], tail: &[f64]) -> Starts {
+        let pad = head.len() - 1;
+        let (level, last) = (head[0], tail[pad]);
         let reflected = |shift| Affine {
             scale: -1.0,
             shift,
             lift: 0.0,
         };
-        let far = level - x[pad];
+        let far = level - head[pad];
         let mut left = Run::new(first, first.space.b);
         left.state = first.steady.at(far, -far / pad as f64);
-        left.descending(&self.left, reflected(level), &x[1..=pad]);
+        left.descending(&self.left, reflected(level), &head[1..]);
 
         let end = (last - level) + last;
-        let far = end - x[n - 1 - pad];
+        let far = end - tail[0];
         let mut right = Run::new(first, self.g);
         right.state = self
             .right_steady
             .at(far, ((last - level) - far) / pad as f64);
-        right.ascending(&self.right, reflected(end), &x[n - 1 - pad..n - 1]);
+        right.ascending(&self.right, reflected(end), &tail[..pad]);
         Starts {
             first: left.state,
             rest: Rest::Infinite(right.state),

@@ -11,6 +11,7 @@ use super::gustafsson;
 use super::lookahead::Block;
 use super::matrix::Vector;
 use super::samples::{Sample, Scale};
+use super::section::{Section, Solved};
 use super::simd::{Affine, InstructionSet};
 use super::system::System;
 use super::tail::Tail;
@@ -49,9 +50,11 @@ pub struct ZeroPhase {
     pub(super) second: System,
     pub(super) turned: Block,
     pub(super) around: Around,
-    edges: Edges,
+    pub(super) edges: Edges,
     /// The longest extension of settled edges, the only one of scipy's and MATLAB's.
-    pad: usize,
+    pub(super) pad: usize,
+    /// The sections of both passes, for channels side by side.
+    pub(super) sections: [Sections; 2],
     tail: Tail,
 }
 
@@ -93,6 +96,10 @@ impl ZeroPhase {
         let mut filter = Self::of_cascades(&first, &design.cascade, edges, set)?;
         filter.second = filter.second.scaled(design.sample_rate_hz());
         filter.second.level_gain = 0.0;
+        if let Some(last) = filter.sections[1].last_mut() {
+            last.c = last.c.map(|c| c * design.sample_rate_hz());
+            last.d *= design.sample_rate_hz();
+        }
         filter.turned = filter.second.block.reversed();
         Ok(filter)
     }
@@ -132,6 +139,7 @@ impl ZeroPhase {
         Ok(Self {
             turned: second_system.block.reversed(),
             tail: Tail::new(&second_system.space, &around, first.settle_samples(1e-18)),
+            sections: [sections_of(first), sections_of(second)],
             first: first_system,
             second: second_system,
             around,
@@ -276,11 +284,11 @@ impl ZeroPhase {
     }
 
     /// Whether the record is shorter than its extension, so that the closed form is due.
-    fn is_closed(&self, length: usize) -> bool {
+    pub(super) fn is_closed(&self, length: usize) -> bool {
         matches!(self.edges, Edges::Settled { .. }) && self.pad >= length
     }
 
-    fn require_length(&self, length: usize) -> Result<(), Error> {
+    pub(super) fn require_length(&self, length: usize) -> Result<(), Error> {
         let least = match self.edges {
             Edges::Settled { .. } | Edges::Gustafsson => 1,
             Edges::Scipy | Edges::Matlab => self.pad + 1,
@@ -361,6 +369,13 @@ impl ZeroPhase {
             0.0,
         )
     }
+}
+
+/// The sections of one pass, solved for their increments.
+pub(super) type Sections = Vec<Solved>;
+
+fn sections_of(cascade: &Cascade) -> Sections {
+    cascade.sections().iter().map(Section::solved).collect()
 }
 
 /// Takes the level out on the way in.

@@ -21,7 +21,8 @@ pub struct Frames<'a> {
     pub lift: &'a [f64; GROUP],
 }
 
-/// Filters frames of sixteen neighbouring channels in place: the first at `first`, the next `stride` doubles further.
+/// Filters frames of sixteen neighbouring channels in place: the first at `first`, the next `stride` doubles further;
+/// from the last frame to the first if `descending`.
 ///
 /// # Panics
 /// Where the last frame does not lie in `samples`: the caller cuts them.
@@ -32,6 +33,7 @@ pub fn run_frames(
     first: usize,
     stride: usize,
     frames: usize,
+    descending: bool,
 ) {
     if frames == 0 {
         return;
@@ -44,17 +46,22 @@ pub fn run_frames(
         "frames beyond the samples"
     );
     assert!(set.available() && work.sections.len() <= work.state.len());
+    let (start, step) = if descending {
+        (first + (frames - 1) * stride, -stride.cast_signed())
+    } else {
+        (first, stride.cast_signed())
+    };
     // Sound: every frame of sixteen doubles lies in `samples`, checked above, and the set is available.
     unsafe {
-        let at = samples.as_mut_ptr().add(first);
+        let at = samples.as_mut_ptr().add(start);
         match set {
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => on_avx512(work, at, stride, frames),
+            InstructionSet::Avx512 => on_avx512(work, at, step, frames),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => on_avx2(work, at, stride, frames),
+            InstructionSet::Avx2 => on_avx2(work, at, step, frames),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Sse2 => on_sse2(work, at, stride, frames),
-            _ => on_scalar(work, at, stride, frames),
+            InstructionSet::Sse2 => on_sse2(work, at, step, frames),
+            _ => on_scalar(work, at, step, frames),
         }
     }
 }
@@ -64,7 +71,7 @@ pub fn run_frames(
 unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
     work: &mut Frames<'_>,
     at: *mut f64,
-    stride: usize,
+    step: isize,
     frames: usize,
 ) {
     unsafe {
@@ -79,7 +86,7 @@ unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
                 std::array::from_fn(|j| std::array::from_fn(|u| load(&work.state[i][j], u)))
             });
             for frame in 0..frames {
-                let place = at.add(stride * frame + lane);
+                let place = at.offset(step * frame.cast_signed()).add(lane);
                 let mut signal: [V; U] = std::array::from_fn(|u| {
                     let x = V::load(place.add(u * V::WIDTH));
                     x.add(origin[u])
@@ -120,15 +127,15 @@ unsafe fn recur<V: Lanes, const S: usize, const U: usize>(
 macro_rules! on {
     ($name:ident, $register:ty, $registers:literal, $($feature:literal)?) => {
         $(#[target_feature(enable = $feature)])?
-        unsafe fn $name(work: &mut Frames<'_>, at: *mut f64, stride: usize, frames: usize) {
+        unsafe fn $name(work: &mut Frames<'_>, at: *mut f64, step: isize, frames: usize) {
             unsafe {
                 match work.sections.len() {
-                    0 | 1 => recur::<$register, 1, $registers>(work, at, stride, frames),
-                    2 => recur::<$register, 2, $registers>(work, at, stride, frames),
-                    3 => recur::<$register, 3, $registers>(work, at, stride, frames),
-                    4 => recur::<$register, 4, $registers>(work, at, stride, frames),
-                    5 => recur::<$register, 5, $registers>(work, at, stride, frames),
-                    _ => recur::<$register, 6, $registers>(work, at, stride, frames),
+                    0 | 1 => recur::<$register, 1, $registers>(work, at, step, frames),
+                    2 => recur::<$register, 2, $registers>(work, at, step, frames),
+                    3 => recur::<$register, 3, $registers>(work, at, step, frames),
+                    4 => recur::<$register, 4, $registers>(work, at, step, frames),
+                    5 => recur::<$register, 5, $registers>(work, at, step, frames),
+                    _ => recur::<$register, 6, $registers>(work, at, step, frames),
                 }
             }
         }
