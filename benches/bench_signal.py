@@ -1,8 +1,9 @@
 """Filters against scipy, in one run on one machine: `OPENBLAS_NUM_THREADS=1 python benches/bench_signal.py`.
 
-Every repeat times both in turn; a row gives the median of the ratios, the nanoseconds per sample (median and least) of
-ours, and how many plain copies of the same samples that is. Build with ``maturin develop --release`` first. `--quick`
-makes fewer repeats; other work on the machine shows in the longest records, which wait for memory.
+Every repeat times both in turn; a row gives the median of the ratios of wall time and of processor time (the latter
+does not count waiting for a busy core, but threads add up in it), the nanoseconds per sample of both (median and
+least), and how many plain copies of the same samples ours is. Build with ``maturin develop --release`` first. `--quick` makes
+fewer repeats; other work on the machine shows in the longest records, which wait for memory, and in the threads.
 """
 
 from __future__ import annotations
@@ -34,24 +35,24 @@ class Row:
     peer: str
     asked: str
     ratio: float
-    ours_ns: float
-    least_ns: float
-    peer_ns: float
+    processor_ratio: float
+    ours_ns: tuple[float, float]
+    peer_ns: tuple[float, float]
     copies: float
 
 
-def seconds(call: Callable[[], object], times: int) -> float:
-    """Return the seconds of one call, the mean over a burst."""
-    started = time.perf_counter()
+def seconds(call: Callable[[], object], times: int) -> tuple[float, float]:
+    """Return the seconds of one call by the wall and by the processor, the mean over a burst."""
+    wall, processor = time.perf_counter(), time.process_time()
     for _ in range(times):
         call()
-    return (time.perf_counter() - started) / times
+    return (time.perf_counter() - wall) / times, (time.process_time() - processor) / times
 
 
 def burst(call: Callable[[], object]) -> int:
     """Return how many calls make a repeat."""
     call()
-    return max(1, round(LEAST_S / seconds(call, 1)))
+    return max(1, round(LEAST_S / seconds(call, 1)[0]))
 
 
 def compare(
@@ -67,16 +68,20 @@ def compare(
     """Time ours, the peer and a copy in turn."""
     calls = [(call, burst(call)) for call in (ours, peer, copy)]
     taken = [[seconds(call, times) for call, times in calls] for _ in range(repeats)]
-    nano = 1e9 / samples
+
+    def nanoseconds(which: int) -> tuple[float, float]:
+        wall = [repeat[which][0] * 1e9 / samples for repeat in taken]
+        return statistics.median(wall), min(wall)
+
     return Row(
         work,
         against,
         asked,
-        statistics.median(p / o for o, p, _ in taken),
-        statistics.median(o for o, _, _ in taken) * nano,
-        min(o for o, _, _ in taken) * nano,
-        statistics.median(p for _, p, _ in taken) * nano,
-        statistics.median(o / c for o, _, c in taken),
+        statistics.median(p[0] / o[0] for o, p, _ in taken),
+        statistics.median(p[1] / max(o[1], 1e-9) for o, p, _ in taken),
+        nanoseconds(0),
+        nanoseconds(1),
+        statistics.median(o[0] / c[0] for o, _, c in taken),
     )
 
 
@@ -151,6 +156,18 @@ def channels(repeats: int) -> list[Row]:
         for threads in (1, 2)
     ]
     frames = np.ascontiguousarray(x[:, :200_000].T)
+    place = np.empty_like(frames)
+    rows.append(
+        compare(
+            "16 channels side by side, zero phase, out=",
+            "",
+            lambda: signal.zero_phase(frames, design=design, axis=0, out=place),
+            lambda: scipy_signal.sosfiltfilt(sos, frames, axis=0),
+            lambda: np.copyto(place, frames),
+            frames.size,
+            few * 3,
+        )
+    )
     bank = signal.FilterBank(causal_design(), 16)
     zi = np.repeat(scipy_signal.sosfilt_zi(sos)[:, :, np.newaxis], 16, axis=2)
     rows.append(
@@ -159,7 +176,7 @@ def channels(repeats: int) -> list[Row]:
             "",
             lambda: bank.push_in_place(frames),
             lambda: scipy_signal.sosfilt(sos, frames, axis=0, zi=zi),
-            lambda: np.copyto(out[:, :200_000].reshape(-1)[: frames.size].reshape(frames.shape), frames),
+            lambda: np.copyto(place, frames),
             frames.size,
             few * 3,
             "sosfilt + zi",
@@ -230,16 +247,20 @@ def main() -> None:
     print(
         f"instruction sets: {', '.join(signal.instruction_sets())}; {POLES} poles, {CUTOFF_HZ:g} Hz at {RATE_HZ:g} Hz\n"
     )
-    print("| work | against | asked | ratio | ours ns/sample (least) | peer ns/sample | plain copies |")
-    print("|---|---|---|---|---|---|---|")
+    print(
+        "| work | against | asked | ratio | by processor time | ours ns/sample (least) | peer (least) | plain copies |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
     for row in (*records(repeats), *channels(repeats), *streams(repeats)):
         print(
             f"| {row.work} | {row.peer} | {row.asked and row.asked + 'x'} | {row.ratio:.1f}x "
-            f"| {row.ours_ns:.2f} ({row.least_ns:.2f}) | {row.peer_ns:.1f} | {row.copies:.1f} |"
+            f"| {row.processor_ratio:.1f}x | {row.ours_ns[0]:.2f} ({row.ours_ns[1]:.2f}) | {row.peer_ns[0]:.1f} ({row.peer_ns[1]:.1f}) "
+            f"| {row.copies:.1f} |",
+            flush=True,
         )
     chunk = np.ones(10)
     f = signal.Filter.of(causal_design())
-    each = min(seconds(lambda: f.push(chunk), 5000) for _ in range(repeats))
+    each = min(seconds(lambda: f.push(chunk), 5000)[0] for _ in range(repeats))
     print(f"\npush of 10 samples: {1e9 * each:.0f} ns in all; two filters on two threads: {two_threads():.2f}x")
 
 
