@@ -2,8 +2,8 @@
 
 Every repeat times both in turn; a row gives the median of the ratios of wall time and of processor time (the latter
 does not count waiting for a busy core, but threads add up in it), the nanoseconds per sample of both (median and
-least), and how many plain copies of the same samples ours is. Build with ``maturin develop --release`` first. `--quick` makes
-fewer repeats; other work on the machine shows in the longest records, which wait for memory, and in the threads.
+least), and how many plain copies of the same samples ours is. Build with ``maturin develop --release`` first. `--quick`
+makes fewer repeats; other work on the machine shows in the longest records, which wait for memory, and in the threads.
 """
 
 from __future__ import annotations
@@ -252,10 +252,10 @@ def main() -> None:
     )
     print("|---|---|---|---|---|---|---|---|")
     for row in (*records(repeats), *channels(repeats), *streams(repeats)):
+        ours, peer = (f"{median:.2f} ({least:.2f})" for median, least in (row.ours_ns, row.peer_ns))
         print(
             f"| {row.work} | {row.peer} | {row.asked and row.asked + 'x'} | {row.ratio:.1f}x "
-            f"| {row.processor_ratio:.1f}x | {row.ours_ns[0]:.2f} ({row.ours_ns[1]:.2f}) | {row.peer_ns[0]:.1f} ({row.peer_ns[1]:.1f}) "
-            f"| {row.copies:.1f} |",
+            f"| {row.processor_ratio:.1f}x | {ours} | {peer} | {row.copies:.1f} |",
             flush=True,
         )
     chunk = np.ones(10)

@@ -38,7 +38,7 @@ def records(folder: Path) -> list[dict[str, object]]:
 def test_two_cases_are_judged(finished: Path) -> None:
     null, spring = sorted(records(finished), key=lambda r: str(r["kind"]), reverse=True)
     assert "failed" not in null and "failed" not in spring, (null, spring)
-    assert null["kind"] == "null" and null["named"] == [] and null["families"]
+    assert null["kind"] == "null" and null["named"] == [] and null["kinds"]
     assert spring["effect"] == "stiffness" and spring["in_set"] is True
     assert 0.9 < spring["cosine"] <= 1.0  # a spring and a slow wave are alike within 60 degrees
     assert spring["after"] < 0.5 * spring["before"]

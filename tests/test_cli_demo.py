@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import sys
 import types
 from pathlib import Path
@@ -92,6 +93,21 @@ def test_demo_needs_a_folder(tmp_path: Path, capsys) -> None:
     (tmp_path / "file").write_text("")
     assert main(["demo", "--out", str(tmp_path / "file")]) == 3
     assert "is a file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["", "  "])
+def test_demo_needs_a_name_for_its_folder(name: str, tmp_path: Path, quick: None, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo", "--out", name]) == 3
+    assert "--out" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_demo_says_a_command_that_a_shell_understands(tmp_path: Path, quick: None, capsys) -> None:
+    assert main(["demo", "--out", str(tmp_path / "my folder")]) == 0
+    tried = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("Try"))
+    words = shlex.split(tried)
+    assert [Path(w).name for w in words[3:6]] == ["run1.csv.gz", "run2.csv.gz", "run3.csv.gz"]
 
 
 def test_reports_are_written_where_asked(tmp_path: Path, quick: None, capsys) -> None:

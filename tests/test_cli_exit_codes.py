@@ -58,6 +58,8 @@ TABLE = [
     (2, "study gap.csv --model rig"),
     (2, "study hole.csv --model rig"),
     (3, ""),
+    (3, "fit turned1.csv --model rig"),
+    (3, "study turned1.csv turned2.csv --model rig"),
     (3, "stdy run.csv.gz"),
     (3, "study run.csv.gz --model rig --fast"),
     (3, "study --model rig"),

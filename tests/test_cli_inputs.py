@@ -109,7 +109,7 @@ def test_a_run_given_twice_counts_once(answer, texts: list[str]) -> None:
 @pytest.mark.parametrize("command", ["fit", "compare", "diagnose"])
 def test_a_held_out_run_changes_nothing_but_its_own_error(answer, texts: list[str], command: str) -> None:
     table = columns(texts[2])
-    table[:, 2] = table[::-1, 2] + 0.3 * np.sin(table[:, 0])
+    table[:, 2] = 3.0 * table[:, 2] + 0.3 * np.sin(table[:, 0])
     Path("nonsense.csv").write_text(with_header("time_s,angle_deg,torque_Nm", table))
     sound = answer(command, "run1.csv", "--held-out", "run3.csv", "--model", "rig")
     odd = answer(command, "run1.csv", "--held-out", "nonsense.csv", "--model", "rig")

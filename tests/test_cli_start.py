@@ -98,3 +98,19 @@ def test_explain_shows_the_whole_card(capsys) -> None:
             assert " ".join(text.split()) in words
         for parameter in card.parameters:
             assert parameter.key in out and parameter.unit in out
+
+
+@pytest.mark.parametrize("word", ["Stribeck", "STRIBECK", " stribeck "])
+def test_explain_does_not_mind_capitals(word: str, capsys) -> None:
+    from luztar.cli import main
+
+    assert main(["explain", word]) == 0
+    assert capsys.readouterr().out.startswith("stribeck:")
+    assert main(["explain", "Once per rev"]) == 0
+
+
+def test_a_negative_number_of_effects_is_a_mistake(capsys) -> None:
+    from luztar.cli import main
+
+    assert main(["study", "run.csv", "--model", "rig", "--max-effects", "-1"]) == 3
+    assert "--max-effects" in capsys.readouterr().err

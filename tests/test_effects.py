@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from luztar import effects, errors
 from luztar.model import Card, Model, card, cards
 from luztar.model.cards import axis_key
+from luztar.model.negative import WORDS, in_sense
 
 # The public names, version 1 of the interface: effect -> kind and parameters, as a rig has them.
 PUBLIC: dict[str, tuple[str, list[str]]] = {
@@ -32,6 +35,7 @@ PUBLIC: dict[str, tuple[str, list[str]]] = {
     "tight_spot": ("friction_level", ["extra_nm", "angle_rad", "width_rad"]),
     "load": ("friction_level", ["coefficient"]),
     "delay": ("sensor", ["time_s"]),
+    "lead": ("sensor", ["time_s"]),
     "warmup": ("friction_level", ["extra_nm", "time_s"]),
     "drift": ("sensor", ["rate_nm_per_s"]),
     "dwell": ("friction_level", ["extra_nm", "time_s"]),
@@ -133,3 +137,28 @@ def test_classes_carry_start_values_into_a_model(c: Card) -> None:
 def test_a_misspelt_effect_is_refused_with_the_nearest_names() -> None:
     with pytest.raises(errors.ModelError, match="Did you mean stribeck"):
         Model.rig() + "stribek"
+
+
+RIG_WORDS = re.compile(r"robot|wheel|torque|Nm|degree|TB 038|ring\b|\bangle|\barm\b|column|tyre|steering|thumb", re.I)
+
+
+@pytest.mark.parametrize("c", [c for c in cards("axis") if not c.is_decoy], ids=name)
+def test_an_axis_is_not_spoken_of_as_a_steering_robot(c: Card) -> None:
+    texts = [c.title, c.look, c.cause, c.check, c.typical, *(p.meaning for p in c.parameters)]
+    # A spring is no ring, and in once-per-turn effects a turn is the screw's.
+    assert not [t for t in texts if RIG_WORDS.search(t.replace("spring", ""))]
+    assert c.per_turn or not any(re.search(r"\bturn", t, re.I) for t in texts)
+    assert all((c.look, c.cause, c.check))
+
+
+@pytest.mark.parametrize("structure", ["rig", "axis"])
+def test_a_negative_extra_is_told_in_its_own_words(structure: str) -> None:
+    for effect in WORDS:
+        c = card(effect, structure)
+        key = c.linear[0].key
+        assert c.linear[0].low < 0.0, "its sign is free"
+        assert in_sense(c, {key: 0.3}) == c == in_sense(c, {})
+        turned = in_sense(c, {key: -0.3})
+        assert turned.look != c.look and turned.cause != c.cause and turned.check
+    assert "regrease" in in_sense(card("stribeck"), {"extra_nm": -0.1}).check
+    assert in_sense(card("stiffness"), {"stiffness_nm_per_rad": -1.0}) == card("stiffness")

@@ -49,9 +49,15 @@ def test_the_asymmetric_model_reaches_the_published_error(train, pulses):
     assert fit.parameters["asymmetric_viscous.difference_n_s_per_m"].value == pytest.approx(-36.86, rel=0.03)
 
 
-def test_the_study_names_the_screws_fatigue_among_its_first_two(train, pulses):
+def test_the_study_tells_the_authors_story_and_goes_on(train, pulses):
     study = luztar.study(luztar.Model.axis(), train, pulses)
-    added = [s.added for s in study.steps if s.added]
-    assert "asymmetric_viscous" in added[:2], study
-    errors = [s.fit.error.held_out_rms for s in study.steps]
-    assert errors[1] < 0.9 * errors[0]
+    # Janot and others: viscous friction that differs by direction, "mechanical fatigue of the screw". What follows
+    # halves the unseen error once more: the recorded command is ahead of the position by less than a sample, and the
+    # friction near standstill is not that of the quick strokes.
+    assert study.named[0] == "asymmetric_viscous"
+    assert set(study.named) == {"asymmetric_viscous", "lead", "stribeck"}
+    assert not any(name.startswith("decoy") for s in study.steps for name in s.set)
+    errors = [100 * s.fit.error.held_out_relative for s in study.steps]
+    assert errors == sorted(errors, reverse=True)
+    # The reference reaches 2.79 % by the same three steps.
+    assert errors[-1] <= 2.8

@@ -9,6 +9,7 @@ from luztar.errors import MeasurementError
 from measurement_files import ROWS, abd_text, rows_text
 
 TEXT = "time_s,angle_deg,torque_Nm\n" + rows_text()
+SI = {"angle": "rad", "torque": "Nm"}
 WHOLE = np.array([(t, np.deg2rad(a), m) for t, a, m in ROWS])
 
 
@@ -199,13 +200,13 @@ def test_a_missing_stamp_is_filled_and_doubtful(tmp_path):
 
 def kinds(time_s):
     time_s = np.asarray(time_s, float)
-    return [f.kind for f in luztar.Run(time=time_s, angle=np.sin(time_s)).integrity.findings]
+    return [f.kind for f in luztar.Run(time=time_s, angle=np.sin(time_s), units=SI).integrity.findings]
 
 
 @pytest.mark.parametrize("rate", [100, 200, 256, 500, 512, 1000, 1024, 2000])
 def test_stamps_rounded_to_a_tenth_of_a_millisecond_are_even(rate):
     time_s = np.round(np.arange(20_000) / rate, 4)
-    run = luztar.Run(time=time_s, angle=np.sin(time_s))
+    run = luztar.Run(time=time_s, angle=np.sin(time_s), units=SI)
     assert run.integrity.findings == ()
     assert run.sample_rate_hz == pytest.approx(rate, rel=1e-5)
 
@@ -216,7 +217,7 @@ def test_stamps_since_1970_are_even():
 
 def test_one_lost_sample_is_a_gap_with_its_place():
     time_s = np.delete(np.arange(1000) / 500, 300)
-    run = luztar.Run(time=time_s, angle=np.sin(time_s))
+    run = luztar.Run(time=time_s, angle=np.sin(time_s), units=SI)
     (finding,) = run.integrity.findings
     assert (finding.kind, finding.doubtful) == ("gap", True)
     assert (finding.from_s, finding.to_s) == (0.598, 0.602)
@@ -252,7 +253,7 @@ def test_events_at_random_times_are_uneven_and_not_a_thousand_gaps():
 def test_findings_of_one_kind_are_counted_beyond_twenty():
     rng = np.random.default_rng(1)
     keep = np.sort(rng.choice(20_000, 19_400, replace=False))
-    run = luztar.Run(time=keep / 1000, angle=np.sin(keep / 1000))
+    run = luztar.Run(time=keep / 1000, angle=np.sin(keep / 1000), units=SI)
     gaps = [f for f in run.integrity.findings if f.kind == "gap"]
     assert len(gaps) == 21
     assert "more of the same kind" in gaps[-1].text
@@ -268,15 +269,15 @@ def noisy(n=20_000, seed=3):
 
 def test_a_sound_noisy_torque_has_no_finding():
     time_s, angle, torque = noisy()
-    assert luztar.Run(time=time_s, angle=angle, torque=torque).integrity.findings == ()
+    assert luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings == ()
     coarse = np.round(torque / 0.01) * 0.01
-    assert luztar.Run(time=time_s, angle=angle, torque=coarse).integrity.findings == ()
+    assert luztar.Run(time=time_s, angle=angle, torque=coarse, units=SI).integrity.findings == ()
 
 
 def test_a_torque_that_stands_still_in_noise_is_stuck():
     time_s, angle, torque = noisy()
     torque[5000:5400] = torque[5000]
-    (finding,) = luztar.Run(time=time_s, angle=angle, torque=torque).integrity.findings
+    (finding,) = luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings
     assert (finding.kind, finding.channel, finding.doubtful) == ("stuck", "torque", True)
     assert (finding.from_s, finding.to_s) == (5.0, 5.399)
 
@@ -285,7 +286,7 @@ def test_a_torque_cut_off_at_its_range_is_clipped():
     time_s, angle, torque = noisy()
     torque += 4.0 * np.exp(-(((time_s - 8.0) / 0.1) ** 2))
     torque = np.minimum(torque, 1.5)
-    found = luztar.Run(time=time_s, angle=angle, torque=torque).integrity.findings
+    found = luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings
     assert {f.kind for f in found} == {"clipped"}
     assert all(f.doubtful and 7.7 < f.from_s < 8.3 for f in found)
 
@@ -293,12 +294,12 @@ def test_a_torque_cut_off_at_its_range_is_clipped():
 def test_a_computed_torque_without_noise_is_not_called_stuck():
     time_s, angle, _ = noisy()
     torque = 0.8 * np.sign(np.cos(0.5 * time_s))
-    assert luztar.Run(time=time_s, angle=angle, torque=torque).integrity.findings == ()
+    assert luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings == ()
 
 
 def test_a_constant_channel_is_reported():
     time_s, angle, _ = noisy()
-    (finding,) = luztar.Run(time=time_s, angle=angle, torque=np.full(time_s.size, 0.8)).integrity.findings
+    (finding,) = luztar.Run(time=time_s, angle=angle, torque=np.full(time_s.size, 0.8), units=SI).integrity.findings
     assert (finding.kind, finding.channel, finding.doubtful) == ("stuck", "torque", False)
 
 

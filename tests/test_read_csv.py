@@ -365,3 +365,21 @@ def test_damaged_bytes_are_read_or_refused_with_a_remedy(tmp_path, flips):
     except MeasurementError as error:
         assert error.where
         assert error.remedy
+
+
+@pytest.mark.parametrize(
+    "raw",
+    [
+        b'<!DOCTYPE html>\n<html><body class="a, b">"hello\n</body></html>\n',
+        b'time_s,angle_deg,torque_Nm\n0,0,0\n"' + b"a" * 200_000,
+        b"\x89PNG\r\n\x1a\n" + np.random.default_rng(1).integers(1, 256, 5000, np.uint8).tobytes(),
+        np.random.default_rng(2).integers(0, 256, 5000, np.uint8).tobytes(),
+    ],
+    ids=["a web page", "a quote that never ends", "a picture", "noise"],
+)
+def test_what_is_no_table_is_refused_with_a_remedy(tmp_path, raw: bytes):
+    path = tmp_path / "run.csv"
+    path.write_bytes(raw)
+    with pytest.raises(MeasurementError) as caught:
+        luztar.read(path)
+    assert "run.csv" in caught.value.where and caught.value.remedy

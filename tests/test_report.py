@@ -18,6 +18,7 @@ from luztar.diagnosis.study import Study
 from luztar.errors import ParameterError
 from luztar.report import embed, figures, write_report
 from luztar.report.figures_of import figures_of
+from luztar.report.sentences import actions
 from report_cases import HOSTILE, HOSTILE_TOO, STRIBECK, negated, provisional, run, runs, with_verdict
 
 MOST_BESIDE_PLOTLY = 3_000_000
@@ -332,3 +333,13 @@ def test_json_in_a_script_cannot_end_it() -> None:
     text = embed.safe_json({"a": "</script><!--&\u2028", "b": float("nan"), "c": float("inf")})
     assert not set("<>&\u2028") & set(text)
     assert json.loads(text) == {"a": "</script><!--&\u2028", "b": None, "c": None}
+
+
+def test_an_effect_that_came_out_the_other_way_round_is_told_so() -> None:
+    hidden = {"stribeck": {"extra_nm": -0.3, "speed_rad_s": 0.2}}
+    study = luztar.study(luztar.Model.rig(), runs("a.csv", "b.csv", hidden=hidden))
+    assert study.named == ("stribeck",)
+    assert study.steps[-1].fit.parameters["stribeck.extra_nm"].value < 0.0
+    assert "stribeck is negative. Less friction at low speed" in str(study)
+    advice = " ".join(what for _, what in actions(study, None))
+    assert "the opposite of Stribeck friction" in advice and "Regrease;" not in advice

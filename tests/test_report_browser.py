@@ -83,3 +83,34 @@ def test_nothing_is_wider_than_the_page(browser: Any, report: Path) -> None:
     page, _, _ = opened(browser, report)
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     page.close()
+
+
+def test_on_paper_no_word_of_a_figure_is_cut(browser: Any, report: Path) -> None:
+    page, _, _ = opened(browser, report)
+    page.set_viewport_size({"width": 690, "height": 1000})
+    page.emulate_media(media="print")
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_timeout(500)
+    # The names of the files are as long as a file system allows; the words of the figures are luztar's own.
+    cut = page.evaluate(
+        """() => [...document.querySelectorAll('[data-figure]')].flatMap(figure => {
+            const box = figure.getBoundingClientRect();
+            return [...figure.querySelectorAll('svg.main-svg text')].filter(text => {
+                const own = text.getBoundingClientRect();
+                return own.width && (own.left < box.left - 1 || own.right > box.right + 1);
+            }).map(text => figure.dataset.figure + ': ' + text.textContent);
+        })"""
+    )
+    assert [c for c in cut if ".csv" not in c] == []
+    page.close()
+
+
+def test_on_paper_a_figure_stands_with_what_introduces_it(browser: Any, report: Path) -> None:
+    page, _, _ = opened(browser, report)
+    page.emulate_media(media="print")
+    parted = page.evaluate(
+        """() => [...document.querySelectorAll('[data-figure]')].map(f => f.previousElementSibling).filter(
+            e => e && getComputedStyle(e).breakAfter !== 'avoid').map(e => e.outerHTML)"""
+    )
+    assert parted == []
+    page.close()

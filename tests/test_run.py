@@ -10,11 +10,12 @@ from luztar.errors import MeasurementError, ParameterError
 
 TIME = np.arange(101) / 100
 ANGLE = np.linspace(-50.0, 50.0, 101)
+SI = {"angle": "rad", "torque": "Nm"}
 TORQUE = np.full(101, 0.8) + 0.01 * TIME
 
 
 def make(**changes):
-    given = {"time": TIME, "angle": ANGLE, "torque": TORQUE, "units": {"angle": "deg"}, "name": "run 1"}
+    given = {"time": TIME, "angle": ANGLE, "torque": TORQUE, "units": {"angle": "deg", "torque": "Nm"}, "name": "run 1"}
     return luztar.Run(**{**given, **changes})
 
 
@@ -119,7 +120,7 @@ def test_a_run_is_split_where_its_time_breaks():
 def uneven(rng=None):
     rng = rng or np.random.default_rng(2)
     time = np.cumsum(rng.uniform(0.006, 0.014, 500))
-    return luztar.Run(time=time, angle=3.0 * time + 1.0, torque=np.sin(time), name="bus.csv")
+    return luztar.Run(time=time, angle=3.0 * time + 1.0, torque=np.sin(time), name="bus.csv", units=SI)
 
 
 def test_an_uneven_run_asks_to_be_resampled():
@@ -226,3 +227,11 @@ def test_importing_the_package_loads_neither_pandas_nor_scipy():
     code = "import luztar, sys; luztar.Run; luztar.read; print([m for m in ('pandas', 'scipy') if m in sys.modules])"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "[]"
+
+
+def test_a_unit_that_nobody_gave_is_a_finding():
+    (found,) = luztar.Run(time=TIME, angle=np.deg2rad(ANGLE), torque=TORQUE).integrity.findings
+    assert (found.kind, found.doubtful) == ("unit_assumed", False) and "angle in rad, torque in Nm" in found.text
+    assert luztar.Run(time=TIME, angle=np.deg2rad(ANGLE), torque=TORQUE, units=SI).integrity.findings == ()
+    (_, doubt) = luztar.Run(time=TIME, angle=ANGLE, torque=TORQUE, units={"torque": "Nm"}).integrity.findings
+    assert (doubt.channel, doubt.doubtful) == ("angle", True) and "'deg'" in doubt.text

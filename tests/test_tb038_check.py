@@ -201,3 +201,19 @@ def test_a_load_cell_on_an_adc_channel_is_mapped_and_scaled(tmp_path):
     assert by_torque.verdict == by_force.verdict == "pass"
     for a, b in zip(by_torque.verifications, by_force.verifications, strict=True):
         assert a.mean_nm == pytest.approx(b.mean_nm, rel=1e-12)  # one rounding of the product per sample
+
+
+def test_advice_on_the_centre_does_not_take_a_direction_for_an_offset():
+    (sentence,) = [s for s in tb038.evaluate(records.three(offset_nm=0.3)).advice if "centred" in s]
+    assert "nothing attached (Annex I 9)" in sentence and "Annex I 13" in sentence
+    assert "differs between the directions" in sentence
+
+
+def test_the_figure_shows_both_limits_and_takes_no_name_for_a_tag():
+    runs = [records.run(seed, name=f"<b>{seed}</b> & co.csv") for seed in (1, 2, 3)]
+    picture = tb038.evaluate(runs).figure()
+    low, high = picture.layout.yaxis.range
+    assert low < -1.5 and high > 1.5
+    assert all("<" not in trace.name and "&amp; co" in trace.name for trace in picture.data)
+    tall = tb038.evaluate(records.three(level_nm=2.5)).figure()
+    assert tall.layout.yaxis.range[1] > 2.5 and tall.layout.yaxis.range[0] < -2.5

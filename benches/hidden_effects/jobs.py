@@ -11,12 +11,9 @@ import luztar
 from luztar.diagnosis import Diagnosis, Study
 
 from .cases import Case, Measured, measure
-from .families import families
 from .rivals import cosines
 
 TABLE_LENGTH = 6
-# Which kind of test rejects costs a second look; a rate of some per cent needs no more cases per colour than this.
-FAMILIES_UP_TO = 25
 
 
 def run(case: Case) -> dict[str, Any]:
@@ -64,8 +61,8 @@ def _luztar(case: Case) -> dict[str, Any]:
     }
     if case.kind != "outside":
         record |= intervals(case, measured)
-    if case.kind == "null" and case.number < FAMILIES_UP_TO:
-        record["families"] = families(first.fit)
+    if case.kind == "null":
+        record["kinds"] = first.detection.kinds
     if case.kind == "effect":
         near = cosines(case, measured, study.noise_floor)
         record["rivals"] = {n: round(c, 4) for n, c in sorted(near.items(), key=lambda x: -x[1])[:4]}

@@ -90,12 +90,12 @@ def _nulls(records: Sequence[Record]) -> plt.Figure | None:
     left.plot([0, 1], [0, 1], color="k", lw=0.7, ls=":")
     left.set(xlabel="p-value of the first look", ylabel="share of cases below", title="Nothing hidden")
     left.legend(frameon=False)
-    families = list(dict.fromkeys(f for r in mine for f in r.get("families", {})))
-    for y, family in enumerate(families):
-        here = [r for r in mine if family in r.get("families", {})]
-        _whisker(right, y, rate(here, lambda r, f=family: r["families"][f][0] <= 0.05), BLUE)
+    kinds = list(dict.fromkeys(k for r in mine for k in r.get("kinds", {})))
+    for y, kind in enumerate(kinds):
+        here = [r for r in mine if kind in r.get("kinds", {})]
+        _whisker(right, y, rate(here, lambda r, k=kind: r["kinds"][k][0] <= 0.05), BLUE)
     right.axvline(5, color="k", lw=0.7, ls=":")
-    right.set_yticks(range(len(families)), families)
+    right.set_yticks(range(len(kinds)), kinds)
     right.invert_yaxis()
     right.set(xlabel="% of cases rejected at 5 %", title="Each kind of test by itself", xlim=(0, None))
     figure.tight_layout()

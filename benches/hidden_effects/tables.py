@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 from .cases import EFFECTS, NOISES, OUTSIDE
-from .families import FAMILIES
 from .markdown import table
 from .tally import Record, coverage, distinct, median, misnamed, of_kind, rate
 
@@ -83,16 +82,14 @@ def nothing_hidden(records: Sequence[Record]) -> str:
     head = ("Noise", "Something is called missing", "An effect is named", "Which", "Other verdicts")
     text = "## Nothing hidden\n\n" + table(head, rows)
     rows = []
-    for family in FAMILIES:
+    for kind in dict.fromkeys(k for r in mine for k in r.get("kinds", {})):
         cells = []
         for noise in (*NOISES, None):
-            here = [r for r in mine if noise in (None, r["noise"]) and family in r.get("families", {})]
-            found = rate(here, lambda r, f=family: r["families"][f][0] <= 0.05)
+            here = [r for r in mine if noise in (None, r["noise"]) and kind in r.get("kinds", {})]
+            found = rate(here, lambda r, k=kind: r["kinds"][k][0] <= 0.05)
             cells.append(found if noise is None else found.short)
-        strongest = Counter(
-            r["families"][family][1] for r in mine if r.get("families", {}).get(family, (1,))[0] <= 0.05
-        )
-        rows.append((family, *cells, ", ".join(f"{w} {n}" for w, n in strongest.most_common(3)) or "—"))
+        strongest = Counter(r["kinds"][kind][1] for r in mine if r.get("kinds", {}).get(kind, (1,))[0] <= 0.05)
+        rows.append((kind, *cells, ", ".join(f"{w} {n}" for w, n in strongest.most_common(3)) or "—"))
     head = ("Kind of test, by itself at 5 %", *NOISES, "all", "Strongest where it rejects")
     text = f"{text}\n\n{table(head, rows)}"
     best = sorted(max((c["gain"] for c in r["table"]), default=0.0) for r in mine)

@@ -28,7 +28,7 @@ def _maker(name: str) -> Callable[..., Effect]:
     return make
 
 
-_MAKERS = {_class_name(c.name): c.name for c in cards()}
+_MAKERS = {_class_name(c.name): c.name for c in cards() if not c.is_decoy}
 
 
 def __getattr__(name: str) -> Callable[..., Effect]:

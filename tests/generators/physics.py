@@ -39,6 +39,7 @@ CATALOGUE: dict[str, dict[str, object]] = {
     "tight_spot": {"extra_nm": None, "angle_rad": None, "width_rad": None},
     "load": {"coefficient": None},
     "delay": {"time_s": None},
+    "lead": {"time_s": None},
     "warmup": {"extra_nm": None, "time_s": None},
     "drift": {"rate_nm_per_s": None},
     # slip_rad: distance over which the excess of the static level fades once the contact slides.
@@ -178,6 +179,8 @@ def force(
             level += p["coefficient"] * np.abs(load)
         elif effect == "delay":
             delay_s += p["time_s"]
+        elif effect == "lead":
+            delay_s -= p["time_s"]
         elif effect == "warmup":
             level += p["extra_nm"] * np.exp(-t / p["time_s"])
         elif effect == "drift":

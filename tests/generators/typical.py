@@ -54,6 +54,7 @@ RIG: dict[str, Typical] = {
     "tight_spot": Typical({"extra_nm": 0.35}, {"width_rad": 0.1}, {"angle_rad": (-0.6, 0.6)}),
     "load": Typical({"coefficient": 0.05}),  # Nm per N with a load of 2 to 10 N
     "delay": Typical({"time_s": 0.04}),
+    "lead": Typical({"time_s": 0.015}),
     "warmup": Typical({"extra_nm": 0.35}, {"time_s": 12.0}),
     "drift": Typical({"rate_nm_per_s": 0.018}, either_sign=True),
     "dwell": Typical({"extra_nm": 0.4}, {"time_s": 0.4}),
@@ -76,6 +77,7 @@ AXIS: dict[str, Typical] = {
     "position_coulomb": Typical({"slope_nm_per_rad": 25.0}, either_sign=True),
     "tight_spot": Typical({"extra_nm": 6.0}, {"width_rad": 0.01}, {"angle_rad": (0.05, 0.2)}),
     "delay": Typical({"time_s": 0.003}),
+    "lead": Typical({"time_s": 0.002}),
     "warmup": Typical({"extra_nm": 6.0}, {"time_s": 8.0}),
     "drift": Typical({"rate_nm_per_s": 0.25}, either_sign=True),
 }

@@ -286,7 +286,7 @@ def plan(
 
 @app.command()
 def explain(
-    effect: Annotated[str | None, typer.Argument(metavar="[EFFECT]", help="An effect's name.")] = None,
+    effect: Annotated[str | None, typer.Argument(metavar="EFFECT", help="An effect's name.")] = None,
     json: Json = False,
     debug: Debug = False,
 ) -> int:
@@ -299,7 +299,7 @@ def explain(
     else:
         from ..model import card
 
-        found = card(effect)
+        found = card(effect.strip().lower().replace("-", "_").replace(" ", "_"))
         say({"schema": 1, **found.to_dict()} if json else card_text(found))
     return exits.DONE
 

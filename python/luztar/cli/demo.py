@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from importlib import resources
 from pathlib import Path
 
@@ -32,6 +33,8 @@ def run_demo(out: str, json_wanted: bool) -> int:
     from ..model import Model
     from ..tb038 import evaluate
 
+    if not out.strip():
+        raise ParameterError("the folder has no name", "--out", "Name one: --out luztar-demo.")
     folder = Path(out)
     _lay_out(folder)
     from ..report import write_report
@@ -55,7 +58,7 @@ def run_demo(out: str, json_wanted: bool) -> int:
 
 
 def _text(folder: Path, check: object, result: object) -> str:
-    runs = " ".join((folder / name).as_posix() for name in RUNS)
+    runs = shlex.join((folder / name).as_posix() for name in RUNS)
     return "\n".join(
         [
             "1. Is the friction within the limits? (luztar tb038)",

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-Files = Annotated[list[str], typer.Argument(metavar="RUN...", help="Run files: CSV (also .gz), AB Dynamics text, MAT.")]
+Files = Annotated[list[str], typer.Argument(metavar="RUN", help="Run files: CSV (also .gz), AB Dynamics text, MAT.")]
 ModelName = Annotated[
     str, typer.Option("--model", metavar="M", help="A built-in structure (rig, axis) or a model file (TOML).")
 ]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..model import Card, cards
 from .fit import Fit
-from .profile import Problem, State, with_effect
+from .profile import Problem, State, state
 from .score import Feature
 from .search import Search
 from .terms import inner_grid
@@ -101,13 +101,18 @@ def try_all(fitted: Fit, progress: Callable[[int, int], None] | None = None) -> 
     least = found[0].held_out_loss if found else 0.0
     # Where even the best takes next to nothing off, refining changes no answer.
     worth = least < (1.0 - 0.5 * PRACTICAL_GAIN) ** 2 * baseline(fitted).held_out_loss
-    for candidate in found if worth else ():
-        # What changes the contact or the delay may have bent the break-away of the model without it: both are refined.
-        bends = candidate.card.shapes_others
-        if candidate.card.inner and candidate.held_out_loss <= (BENT_WITHIN if bends else REFINED_WITHIN) * least:
-            candidate.search.refine(fitted.problem, only=None if bends else candidate.name, rounds=2 if bends else 1)
+    if worth:
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            list(pool.map(lambda c: _refine(fitted, c, least), found))
     found.sort(key=lambda c: c.held_out_loss)
     return found, features
+
+
+def _refine(fitted: Fit, candidate: Candidate, least: float) -> None:
+    # What changes the contact or the delay may have bent the break-away of the model without it: both are refined.
+    bends = candidate.card.shapes_others
+    if candidate.card.inner and candidate.held_out_loss <= (BENT_WITHIN if bends else REFINED_WITHIN) * least:
+        candidate.search.refine(fitted.problem, only=None if bends else candidate.name, rounds=2 if bends else 1)
 
 
 def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
@@ -117,7 +122,7 @@ def _try(fitted: Fit, c: Card) -> tuple[Candidate, list[Feature]]:
     tested = set(np.linspace(0, len(points) - 1, min(TESTED_POINTS, len(points))).round().astype(int).tolist())
     features: list[Feature] = []
     for i, inner in enumerate(points):
-        tried = with_effect(problem, base, c.name, inner)
+        tried = state(problem, base.terms.having(c.name, inner))
         search.visit(tried)
         if i in tested:
             features += _features(problem, base, tried, c)

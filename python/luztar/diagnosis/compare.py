@@ -7,6 +7,7 @@ from typing import Any
 
 from .detect import lack_of_fit
 from .fit import Fit
+from .given import given_fit
 from .score import Detection
 from .where import Map, Regime, regimes, residual_map
 
@@ -42,6 +43,8 @@ class Comparison:
 
         return comparison_text(self)
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -62,4 +65,5 @@ def compare(fitted: Fit) -> Comparison:
     fitted : Fit
         From ``luztar.fit``.
     """
+    fitted = given_fit("compare", fitted)
     return Comparison(fitted, regimes(fitted), residual_map(fitted), lack_of_fit(fitted))

@@ -13,12 +13,13 @@ from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
-from .fit import Fit, folded, predict
+from .fit import Fit, predict, predict_folds
+from .given import given_fit
 from .intervals import Estimate
 from .misfit import rms, usable
 from .prepare import Prepared
 from .score import Detection
-from .verdict import Judgement, judge
+from .verdict import Judgement, folded, judge
 from .where import Map, Regime, regimes, residual_map
 
 
@@ -135,6 +136,7 @@ class Diagnosis:
             "noise_floor": fit.noise_floor.to_dict(),
             "error": fit.error.to_dict(),
             "parameters": {k: v.to_dict() for k, v in fit.parameters.items()},
+            "flags": [f.to_dict() for f in fit.flags],
             "where": [r.to_dict() for r in self.where],
             "candidates": [c.to_dict() for c in self.candidates],
             "lack_of_fit": {"p_value": self.detection.lack_of_fit, "along": self.detection.along},
@@ -148,6 +150,8 @@ class Diagnosis:
         from .words import diagnosis_text
 
         return diagnosis_text(self)
+
+    __repr__ = __str__
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -171,11 +175,16 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
     progress : callable, optional
         Called with (done, total).
     """
+    fitted = given_fit("diagnose", fitted)
     found, features = try_all(fitted, progress)
     before = baseline(fitted).losses
     gains = np.column_stack([before - c.search.losses for c in found]) if found else None
-    tested = detection(fitted, features, gains)
-    judged = judge(fitted, found, tested)
+    simpler = folded(fitted, found)
+    # In the reversal zones the extrapolated starts are never quite right. A candidate that is no more than that comes
+    # out as a simpler one: it cannot be named, and what it finds there is not held against the model.
+    telling = [f for f in features if not (f.inside_zones and f.name in simpler)]
+    tested = detection(fitted, telling, gains)
+    judged = judge(fitted, found, tested, simpler)
     return Diagnosis(
         fit=fitted,
         judgement=judged,
@@ -184,7 +193,7 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
         found=tuple(found),
-        unseen_rms=_rms(fitted.runs, folded(fitted.problem, baseline(fitted))),
+        unseen_rms=_rms(fitted.runs, predict_folds(fitted.problem, baseline(fitted))),
     )
 
 
@@ -193,7 +202,7 @@ def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> T
     assert state is not None
     problem, runs = fitted.problem, fitted.runs
     modelled = [predict(r, m, state.coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
-    unseen = folded(problem, c.search)
+    unseen = predict_folds(problem, c.search)
     share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,

@@ -1,4 +1,4 @@
-"""The normal equations of a driven fit, one block per stroke.
+"""The normal equations of a driven fit, one block per stroke; the core forms, sums and solves them.
 
 Everything that follows (fits, held-out errors, intervals) is sums of these blocks, so that a fold costs a small
 solve and not a pass over the samples.
@@ -12,13 +12,18 @@ it those few milliseconds would be sold as a delay of the torque channel.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _core
 from .prepare import Prepared
 from .terms import Terms
+
+if TYPE_CHECKING:
+    from .folds import Folds
 
 
 @dataclass(frozen=True)
@@ -70,8 +75,25 @@ class Blocks:
     samples: np.ndarray
 
     def solve(self, chosen: np.ndarray | None = None) -> np.ndarray:
-        """Return the least-squares coefficients for all strokes or the chosen ones."""
-        return solve((self.gram if chosen is None else self.gram[chosen]).sum(axis=0), self.bound)
+        """Return the least-squares coefficients for all strokes or the chosen ones.
+
+        Columns are scaled to unit length; where two cannot be told apart the shortest solution is taken, and the
+        intervals say that the data do not decide between them. The last coefficient stays within plus or minus
+        ``bound``.
+        """
+        return _core.solve_block((self.gram if chosen is None else self.gram[chosen]).sum(axis=0), self.bound)
+
+    def held_out(self, folds: Folds) -> tuple[np.ndarray, np.ndarray]:
+        """Predict every fold from the others.
+
+        Returns
+        -------
+        losses : ndarray, shape (strokes,)
+            Sum of squares left in each stroke by coefficients that have not seen its fold.
+        training : ndarray, shape (folds,)
+            Sum of squares left in the strokes each fold was trained on: what inner parameters are chosen by.
+        """
+        return _core.held_out(self.gram, folds.of_stroke.tolist(), folds.count, self.bound)
 
 
 @dataclass(frozen=True)
@@ -100,68 +122,59 @@ class Columns:
         return tuple(m[:, -2] for m in self.matrix)
 
 
-def columns(runs: Sequence[Prepared], terms: Terms) -> Columns:
-    """Ask the core for the columns of all terms."""
+def columns(runs: Sequence[Prepared], terms: Terms, given: Mapping[int, float] | None = None) -> Columns:
+    """Ask the core for the columns of all terms.
+
+    Parameters
+    ----------
+    runs : sequence of Prepared
+    terms : Terms
+    given : mapping of int to float, optional
+        Coefficients known beforehand, by the place of their column: it is left out, its part taken off the measurement.
+    """
+    given = given or {}
     pairs = terms.pairs()
     matrix = []
     for r in runs:
-        block = r.recording.columns(pairs, list(range(len(pairs)))).T if pairs else np.empty((r.effort.size, 0))
-        shift = r.recording.start_shift(pairs)
-        matrix.append(np.column_stack([block, shift, r.effort]))
+        made = r.recording.columns(pairs, list(range(len(pairs)))) if pairs else np.empty((0, r.effort.size))
+        left = r.effort - sum(made[place] * value for place, value in given.items())
+        free = [i for i in range(len(made)) if i not in given]
+        matrix.append(np.vstack([made[free], r.recording.start_shift(pairs), left]).T)
     return Columns(terms, tuple(matrix))
 
 
+def fitted_blocks(runs: Sequence[Prepared], terms: Terms, given: Mapping[int, float], weights: Weights) -> Blocks:
+    """Form the normal equations of a model; its columns stay in the core."""
+    pairs, places = terms.pairs(), list(given.items())
+    grams = [r.recording.normal_equations(pairs, places, r.effort, _rows(r, weights)) for r in runs]
+    return _joined(runs, grams, weights)
+
+
 def blocks(runs: Sequence[Prepared], made: Columns, weights: Weights) -> Blocks:
-    """Form the normal equations of every stroke."""
-    grams, owners, counts = [], [], []
-    for r, matrix in zip(runs, made.matrix, strict=True):
-        for stroke in r.strokes:
-            part = slice(stroke.first, stroke.last)
-            a = matrix[part][r.usable[part]]
-            gram = a.T @ a
-            cross = gram[:, -2]
-            ridge = weights.ridge(r.step_s, stroke.onset_uncertainty_s)
-            grams.append(gram - np.outer(cross, cross) / (cross[-2] + ridge))
-            owners.append(stroke.run)
-            counts.append(len(a))
-    bound = weights.level * start_uncertainty_s(runs)
-    return Blocks(np.array(grams), bound, np.array(owners), np.array(counts))
+    """Form the normal equations of columns that are at hand."""
+    grams = [
+        _core.normal_equations(np.ascontiguousarray(m.T), _rows(r, weights))
+        for r, m in zip(runs, made.matrix, strict=True)
+    ]
+    return _joined(runs, grams, weights)
+
+
+def _rows(r: Prepared, weights: Weights) -> list[tuple[int, int, float]]:
+    return [
+        (first, last, weights.ridge(r.step_s, s.onset_uncertainty_s))
+        for s, (first, last) in zip(r.strokes, r.used, strict=True)
+    ]
+
+
+def _joined(runs: Sequence[Prepared], grams: Sequence[np.ndarray], weights: Weights) -> Blocks:
+    owners = np.array([s.run for r in runs for s in r.strokes])
+    counts = np.array([last - first for r in runs for first, last in r.used])
+    return Blocks(np.concatenate(grams), weights.level * start_uncertainty_s(runs), owners, counts)
 
 
 def start_uncertainty_s(runs: Sequence[Prepared]) -> float:
     """Return by how much the instant of a start is uncertain, on average."""
     return float(np.mean([s.onset_uncertainty_s for r in runs for s in r.strokes]))
-
-
-def solve(gram: np.ndarray, bound: float = np.inf) -> np.ndarray:
-    """Return the least-squares coefficients of one summed block.
-
-    Columns are scaled to unit length; where two cannot be told apart the shortest solution is taken, and the
-    intervals say that the data do not decide between them. The last coefficient stays within plus or minus ``bound``.
-    """
-    p = gram.shape[0] - 1
-    if p == 0:
-        return np.empty(0)
-    free = _solve(gram[:p, :p], gram[:p, p])
-    if abs(free[-1]) <= bound:
-        return free
-    last = float(np.copysign(bound, free[-1]))
-    q = p - 1
-    return np.append(_solve(gram[:q, :q], gram[:q, p] - last * gram[:q, q]), last)
-
-
-def _solve(products: np.ndarray, right: np.ndarray) -> np.ndarray:
-    scale = np.sqrt(np.maximum(np.diag(products), np.finfo(float).tiny))
-    normal = products / np.outer(scale, scale)
-    try:
-        factor = np.linalg.cholesky(normal)
-        # The square of the factor's smallest diagonal bounds the condition of the scaled equations, which is the square
-        # of the columns': 1e-12 leaves four digits.
-        if factor.diagonal().min() ** 2 > 1e-12:
-            return np.linalg.solve(normal, right / scale) / scale
-    except np.linalg.LinAlgError:
-        pass
-    return np.linalg.lstsq(normal, right / scale, rcond=1e-12)[0] / scale
 
 
 def loss(gram: np.ndarray, coefficients: np.ndarray) -> np.ndarray:

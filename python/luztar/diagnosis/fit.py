@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -12,11 +13,14 @@ import numpy as np
 from ..errors import ModelError
 from ..model import Model, card
 from .equations import Weights
+from .flags import Flag, flags_of
 from .floor import NoiseFloor, friction_level, noise_floor
 from .folds import Folds
+from .given import given_model, given_runs
 from .intervals import Estimate, estimates
 from .misfit import Misfit, misfit
-from .prepare import Prepared, prepare
+from .plausible import prepare_measured
+from .prepare import Prepared
 from .profile import Problem, State, owners, state
 from .search import Search
 from .terms import inner_grid, start_terms
@@ -68,6 +72,11 @@ class Fit:
         """Measured less modelled, per run, at the kept samples."""
         return tuple(r.effort - p for r, p in zip(self.runs, self.predicted, strict=True))
 
+    @functools.cached_property
+    def flags(self) -> tuple[Flag, ...]:
+        """What is odd about the parameters: at a bound, without influence, or friction that drives the motion."""
+        return flags_of(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as the JSON interface prints it."""
         return {
@@ -78,12 +87,15 @@ class Fit:
             "noise_floor": self.noise_floor.to_dict(),
             "error": self.error.to_dict(),
             "parameters": {k: v.to_dict() for k, v in self.parameters.items()},
+            "flags": [f.to_dict() for f in self.flags],
         }
 
     def __str__(self) -> str:
         from .words import fit_text
 
         return fit_text(self)
+
+    __repr__ = __str__
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -97,15 +109,15 @@ class Fit:
         return loops(self)
 
 
-def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> Fit:
+def fit(model: Model, runs: Run | Sequence[Run], held_out: Run | Sequence[Run] = ()) -> Fit:
     """Fit a model to runs.
 
     Parameters
     ----------
     model : Model
-    runs : sequence of Run
+    runs : Run or sequence of Run
         What coefficients and inner parameters are fitted to.
-    held_out : sequence of Run
+    held_out : Run or sequence of Run
         Only predicted. Without any, each run is predicted from the others, a single run by its strokes in folds.
 
     Returns
@@ -117,8 +129,10 @@ def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> Fit:
     MeasurementError, ModelError
         Data that cannot be used, or a model that does not fit the structure of the data.
     """
-    unseen = prepare(held_out, model) if len(held_out) else ()
-    return fit_prepared(model, prepare(not_held_out(runs, held_out), model), unseen)
+    model, fitted = given_model(model), given_runs("runs", runs)
+    left_out = given_runs("held_out", held_out)
+    unseen = prepare_measured(left_out, model) if left_out else ()
+    return fit_prepared(model, prepare_measured(not_held_out(fitted, left_out), model), unseen)
 
 
 def not_held_out(runs: Sequence[Run], held_out: Sequence[Run]) -> list[Run]:
@@ -132,8 +146,19 @@ def fit_prepared(
     runs: tuple[Prepared, ...],
     unseen: tuple[Prepared, ...] = (),
     floor: NoiseFloor | None = None,
+    *,
+    located: bool = False,
 ) -> Fit:
-    """Fit a model to prepared runs; see :func:`fit`."""
+    """Fit a model to prepared runs; see :func:`fit`.
+
+    Parameters
+    ----------
+    model : Model
+    runs, unseen : tuple of Prepared
+    floor : NoiseFloor, optional
+    located : bool
+        Whether the start values in the model come from a search of these runs, which need not be repeated.
+    """
     unit = model.structure.effort_unit
     floor = floor or noise_floor(runs, unit)
     level = max(friction_level(runs), 1e-12)
@@ -142,23 +167,27 @@ def fit_prepared(
     search = Search(Folds.of(first.blocks))
     search.visit(first)
     for name in model.effects:
-        _search_grid(problem, search, name)
+        if not (located and _is_started(model, name)):
+            _search_grid(problem, search, name)
     search.refine(problem)
     return finish(problem, search, unseen, floor)
 
 
+def _is_started(model: Model, name: str) -> bool:
+    return any(f"{name}.{p.key}" in model.start for p in card(name, model.structure_name).inner)
+
+
 def _search_grid(problem: Problem, search: Search, name: str) -> None:
-    """Try the grid of an effect's inner parameters, unless the user or an earlier step has given a start.
+    """Try the grid of an effect's inner parameters, with the start values that the user gives among them.
 
     A local search would stay where it starts: the loss over a gap is flat or has several valleys.
     """
     model = problem.model
-    inner = card(name, model.structure_name).inner
-    if not inner or any(f"{name}.{p.key}" in model.start for p in inner):
+    if not card(name, model.structure_name).inner:
         return
     assert search.best is not None
     for values in inner_grid(name, model, problem.runs):
-        search.visit(state(problem, search.best.terms.having(name, values), search.best, name))
+        search.visit(state(problem, search.best.terms.having(name, values)))
 
 
 def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor: NoiseFloor) -> Fit:
@@ -173,7 +202,7 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
         held = tuple(predict(r, m, best.coefficients) for r, m in zip(unseen, there.made.matrix, strict=True))
         held_runs = unseen
     else:
-        held, held_runs = folded(problem, search), runs
+        held, held_runs = predict_folds(problem, search), runs
     error = misfit(
         runs,
         [r.effort - p for r, p in zip(runs, predicted, strict=True)],
@@ -204,7 +233,7 @@ def predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.nda
     return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
-def folded(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
+def predict_folds(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
     """Predict every stroke with coefficients that have not seen its fold."""
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from .equations import Blocks, loss
-from .folds import Folds, held_out
+from .folds import Folds
 from .prepare import Prepared
 
 # Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
@@ -122,25 +123,30 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
     made = saturated(runs)
     grams, owners, counts = [], [], []
     for r, m in zip(runs, made, strict=True):
-        table = np.column_stack([m, r.effort])
+        rows, tables, start = [], [], 0
         for s in r.strokes:
             part = slice(s.first, s.last)
-            a = table[part][r.usable[part] & ~r.zone[part]]
-            grams.append(a.T @ a)
+            keep = r.usable[part] & ~r.zone[part]
+            tables.append(np.column_stack([m[part][keep], r.effort[part][keep]]))
+            # An infinite ridge: away from the zones no start is uncertain.
+            rows.append((start, start + int(keep.sum()), np.inf))
+            start = rows[-1][1]
             owners.append(s.run)
-            counts.append(len(a))
+            counts.append(int(keep.sum()))
+        grams.append(_core.normal_equations(np.ascontiguousarray(np.concatenate(tables).T), rows))
+    gram = np.concatenate(grams)
     # A ridge keeps hats that no sample touches from making the equations singular; spread over the strokes, it is in
     # every sum that is solved.
-    ridge = RIDGE * np.eye(grams[0].shape[0]) / len(grams)
+    ridge = RIDGE * np.eye(gram.shape[1]) / len(gram)
     ridge[-1, -1] = 0.0
-    blocks = Blocks(np.array(grams) + ridge, np.inf, np.array(owners), np.array(counts))
+    blocks = Blocks(gram + ridge, np.inf, np.array(owners), np.array(counts))
     samples = max(int(blocks.samples.sum()), 1)
     fitted = blocks.solve()
     inside = float(loss(blocks.gram, fitted).sum()) / samples
     folds = Folds.of(blocks)
     unseen = inside
     if folds.count > 1:
-        losses, _ = held_out(blocks, folds)
+        losses, _ = blocks.held_out(folds)
         # A hat that only one run visits has no prediction there: such strokes say nothing about the noise. The median
         # over strokes, scaled to a mean by the training's own ratio, is deaf to them.
         per_stroke = losses / np.maximum(blocks.samples, 1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .equations import Blocks, loss
+from .equations import Blocks
 
 # With a single run its strokes are dealt into this many folds of neighbouring pairs (one stroke each way), so that
 # every fold sees both directions.
@@ -35,23 +35,3 @@ class Folds:
         pairs = np.arange(blocks.run.size) // 2
         count = min(SINGLE_RUN_FOLDS, int(pairs.max()) + 1) if blocks.run.size else 0
         return cls(pairs % max(count, 1), count)
-
-
-def held_out(blocks: Blocks, folds: Folds) -> tuple[np.ndarray, np.ndarray]:
-    """Predict every fold from the others.
-
-    Returns
-    -------
-    losses : ndarray, shape (strokes,)
-        Sum of squares left in each stroke by coefficients that have not seen its fold.
-    training : ndarray, shape (folds,)
-        Sum of squares left in the strokes each fold was trained on: what inner parameters are chosen by.
-    """
-    losses = np.zeros(len(blocks.gram))
-    training = np.zeros(folds.count)
-    for k in range(folds.count):
-        inside = folds.of_stroke == k
-        coefficients = blocks.solve(~inside)
-        training[k] = loss(blocks.gram[~inside], coefficients).sum()
-        losses[inside] = loss(blocks.gram[inside], coefficients)
-    return losses, training

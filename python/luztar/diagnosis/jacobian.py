@@ -51,7 +51,7 @@ def jacobian(problem: Problem, fitted: State, varied: Sequence[Inner]) -> Column
         for sign in (1.0, -1.0):
             inner = list(fitted.terms.inner[v.effect])
             inner[v.index] += sign * v.step
-            moved = state(problem, fitted.terms.having(v.effect, tuple(inner)), fitted, v.effect)
+            moved = state(problem, fitted.terms.having(v.effect, tuple(inner)))
             sides.append([_model(m, fitted.coefficients) for m in moved.made.matrix])
         for k, (up, down) in enumerate(zip(*sides, strict=True)):
             derivative[k].append((up - down) / (2.0 * v.step))

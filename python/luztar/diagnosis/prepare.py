@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,13 +14,11 @@ from .. import _core
 from .._arrays import vector
 from ..errors import MeasurementError
 from ..model import Model
+from .resolved import FILTER_MEMORY_PERIODS, require_resolved
 
 if TYPE_CHECKING:
     from ..measurement import Run
 
-# The low pass mixes the time before into the time after an instant: its impulse response, 8 poles in all, has decayed
-# to 1 % after 1.5 periods of the upper edge.
-FILTER_MEMORY_PERIODS = 1.5
 # Speed and acceleration take two samples on either side each; nearer to the end they are one-sided.
 DERIVATIVE_REACH = 4
 # The reversal zone reaches this far beyond the stretch of low speed (interface: 0.15 s at the 6 Hz of a rig).
@@ -71,6 +70,8 @@ class Prepared:
     zone : ndarray of bool, shape (n,)
         True at rest and around reversals.
     strokes : tuple of Stroke
+    used : tuple of (int, int)
+        The usable samples of every stroke, ``[first, last)``.
     step_s : float
         Seconds between kept samples.
     duration_s : float
@@ -88,6 +89,7 @@ class Prepared:
     usable: np.ndarray
     zone: np.ndarray
     strokes: tuple[Stroke, ...]
+    used: tuple[tuple[int, int], ...]
     step_s: float
     duration_s: float
     has_load: bool
@@ -103,10 +105,11 @@ def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:
     """
     if not len(runs):
         raise MeasurementError("there are no runs", "runs", "Give at least one run file.")
-    return tuple(_prepare(number, run, model) for number, run in enumerate(runs))
+    return tuple(prepare_run(number, run, model) for number, run in enumerate(runs))
 
 
-def _prepare(number: int, run: Run, model: Model) -> Prepared:
+def prepare_run(number: int, run: Run, model: Model) -> Prepared:
+    """Make one run ready; its strokes carry the number."""
     structure = model.structure
     if not run.integrity.complete:
         why = next((f.text for f in run.integrity.findings if f.kind == "cut"), "the file ends in the middle")
@@ -126,26 +129,35 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         raise MeasurementError(f"the {structure.motion} never moves", run.name, "Check the channel or its --map.")
     pitch = model.known.get("pitch_m")
     turn = 1.0 if structure.name == "rig" else 2.0 * math.pi / pitch if pitch else math.nan
-    recording = _core.Recording(
+    recorded = functools.partial(
+        _core.Recording,
         motion,
         sample_rate_hz=rate,
-        band_hz=band,
-        decimate=model.comparison.decimate,
-        anti_alias=decimates_alone(model),
         already_filtered=model.comparison.filter_already_applied,
         hysteresis=structure.hysteresis(span),
         minimum_travel=structure.minimum_travel(span),
         turn_rad_per_unit=turn,
         load_n=load,
     )
+    recording = recorded(band_hz=band, decimate=model.comparison.decimate, anti_alias=decimates_alone(model))
     position, speed, acceleration = recording.kept()
     every = recording.decimate
     step_s = every / rate
     found = recording.strokes()
+
+    def usually() -> int:
+        usual = recorded(band_hz=min(structure.band_hz, 0.4 * rate), decimate=None, anti_alias=False)
+        return len(usual.strokes())
+
+    require_resolved(run.name, model, band, rate, run.duration_s, position.size, len(found), usually)
     if not found:
         raise MeasurementError("holds no stroke", run.name, f"A stroke needs {_least_travel(model, span)} of travel.")
     memory = math.ceil(FILTER_MEMORY_PERIODS / band / step_s)
     strokes = _strokes(number, found, every, memory, position.size)
+    from_, to = _usable(
+        position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
+    )
+    place = np.arange(position.size)
     return Prepared(
         name=run.name,
         recording=recording,
@@ -154,11 +166,10 @@ def _prepare(number: int, run: Run, model: Model) -> Prepared:
         speed=speed,
         acceleration=acceleration,
         effort=recording.measured(effort),
-        usable=_usable(
-            position, strokes[0], memory, structure.unknown_travel_share * recording.range, every, len(recording)
-        ),
+        usable=(place >= from_) & (place < to),
         zone=_zone(speed, structure.rest_speed, ZONE_WIDTH_PERIODS / band / step_s),
         strokes=strokes,
+        used=tuple((min(max(s.first, from_), to), max(min(s.last, to), from_)) for s in strokes),
         step_s=step_s,
         duration_s=run.duration_s,
         has_load=load is not None,
@@ -198,13 +209,13 @@ def _strokes(
 
 def _usable(
     position: np.ndarray, first: Stroke, memory: int, unknown_travel: float, every: int, samples: int
-) -> np.ndarray:
-    start = position[first.onset]
-    travelled = np.abs(position - start) > unknown_travel
+) -> tuple[int, int]:
+    """Return the usable samples, ``[from, to)``: after the first motion has fixed the friction state."""
+    travelled = np.abs(position - position[first.onset]) > unknown_travel
     travelled[: first.onset] = False
     known = int(np.argmax(travelled)) if travelled.any() else position.size
-    place = np.arange(position.size)
-    return (place >= max(known, first.onset) + memory) & (place * every < samples - DERIVATIVE_REACH)
+    to = max(0, math.ceil((samples - DERIVATIVE_REACH) / every))
+    return min(max(known, first.onset) + memory, to), to
 
 
 def _zone(speed: np.ndarray, rest_speed: float | None, width: float) -> np.ndarray:

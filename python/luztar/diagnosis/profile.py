@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model import Model, card
-from .equations import Blocks, Columns, Weights, blocks, columns, loss
+from .equations import Blocks, Columns, Weights, columns, fitted_blocks, loss
 from .grids import is_continuous, is_geometric, limits, points
 from .prepare import Prepared
 from .terms import Terms
@@ -43,10 +43,17 @@ class Problem:
 
 @dataclass(frozen=True)
 class State:
-    """Terms with their columns and blocks."""
+    """Terms with their normal equations.
 
+    Attributes
+    ----------
+    problem : Problem
+    terms : Terms
+    blocks : Blocks
+    """
+
+    problem: Problem
     terms: Terms
-    made: Columns
     blocks: Blocks
 
     @functools.cached_property
@@ -59,9 +66,10 @@ class State:
         """The least sum of squares."""
         return float(loss(self.blocks.gram, self.coefficients).sum())
 
-
-def _shapes_others(problem: Problem, name: str) -> bool:
-    return card(name, problem.model.structure_name).shapes_others
+    @functools.cached_property
+    def made(self) -> Columns:
+        """The columns."""
+        return columns(self.problem.runs, self.terms, given(self.problem, self.terms))
 
 
 def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
@@ -69,52 +77,16 @@ def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
     return [(name, i) for name in terms.effects for i in range(len(card(name, model.structure_name).linear))]
 
 
-def state(problem: Problem, terms: Terms, like: State | None = None, changed: str | None = None) -> State:
-    """Build columns and blocks; with ``like`` and ``changed`` only the columns of one effect are made anew."""
-    if like is None or changed is None or _shapes_others(problem, changed) or like.terms.effects != terms.effects:
-        made = _known_removed(problem, terms, columns(problem.runs, terms))
-    else:
-        made = _replaced(problem, terms, like.made, changed)
-    return State(terms, made, blocks(problem.runs, made, problem.weights))
-
-
-def _free(problem: Problem, terms: Terms) -> list[int]:
-    return [i for i, owner in enumerate(owners(terms, problem.model)) if owner not in problem.fixed]
-
-
-def _known_removed(problem: Problem, terms: Terms, made: Columns) -> Columns:
+def given(problem: Problem, terms: Terms) -> dict[int, float]:
+    """Return the coefficients known beforehand, by the place of their column."""
     if not problem.fixed:
-        return made
-    all_owners = owners(terms, problem.model)
-    free = _free(problem, terms)
-    matrix = []
-    for m in made.matrix:
-        known = sum(problem.fixed[o] * m[:, i] for i, o in enumerate(all_owners) if o in problem.fixed)
-        matrix.append(np.column_stack([m[:, free], m[:, -2], m[:, -1] - known]))
-    return Columns(terms, tuple(matrix))
+        return {}
+    return {i: problem.fixed[o] for i, o in enumerate(owners(terms, problem.model)) if o in problem.fixed}
 
 
-def _replaced(problem: Problem, terms: Terms, made: Columns, changed: str) -> Columns:
-    index = terms.effects.index(changed)
-    free = [o for o in owners(terms, problem.model) if o not in problem.fixed]
-    places = [k for k, (name, _) in enumerate(free) if name == changed]
-    matrix = []
-    for r, m in zip(problem.runs, made.matrix, strict=True):
-        m = m.copy()
-        m[:, places] = r.recording.columns(terms.pairs(), [index]).T
-        matrix.append(m)
-    return Columns(terms, tuple(matrix))
-
-
-def with_effect(problem: Problem, base: State, name: str, inner: tuple[float, ...]) -> State:
-    """Return the state with one effect more."""
-    terms = base.terms.having(name, inner)
-    if _shapes_others(problem, name):
-        return state(problem, terms)
-    index = terms.effects.index(name)
-    more = [r.recording.columns(terms.pairs(), [index]).T for r in problem.runs]
-    made = Columns(terms, base.made.having(more).matrix)
-    return State(terms, made, blocks(problem.runs, made, problem.weights))
+def state(problem: Problem, terms: Terms) -> State:
+    """Form the normal equations of terms; columns that an earlier state had are not made again."""
+    return State(problem, terms, fitted_blocks(problem.runs, terms, given(problem, terms), problem.weights))
 
 
 def refine(
@@ -197,7 +169,7 @@ def _refine_one(problem: Problem, best: State, name: str, i: int, visit: Callabl
         if value not in tried:
             inner = list(best.terms.inner[name])
             inner[i] = value
-            tried[value] = state(problem, best.terms.having(name, tuple(inner)), best, name)
+            tried[value] = state(problem, best.terms.having(name, tuple(inner)))
             if visit is not None:
                 visit(tried[value])
         return tried[value].loss

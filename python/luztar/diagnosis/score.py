@@ -10,7 +10,6 @@ right ones: naming is by held-out error after refitting (see ``candidates``).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -19,6 +18,7 @@ import numpy as np
 from .chance import one_sided, p_values, signs, studentised, studentised_pairs
 from .equations import Weights
 from .floor import hats, travel_since_reversal
+from .lines import line_frequencies_hz, line_scores
 from .prepare import Prepared
 
 # Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
@@ -27,12 +27,13 @@ SPEED_CELLS = 5
 TIME_CELLS = 8
 TRAVEL_CELLS = (0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5)
 PRODUCT_CELLS = 8
-# Spectral lines are looked for from slower than a stroke's own changes up to the band's upper edge, in steps of half a
-# line's width; so many at a time, that the columns stay small.
-SLOWEST_LINE_HZ = 0.3
-LINES_AT_A_TIME = 40
+# What gives the uncertain start of each stroke the weight it has in the fit.
+Whitener = Callable[[np.ndarray], np.ndarray]
 # Kinds of what repeats.
-LACK = ("state", "time", "reversal", "spectrum")
+CELLS = ("state", "time", "reversal")
+LACK = (*CELLS, "spectrum")
+# Kinds of candidates' tests: outside the reversal zones, and inside for what only shows there.
+CANDIDATES = ("candidates", "candidates in zones")
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,8 @@ class Detection:
     along : str
         Where it repeats most: a kind of :data:`LACK`.
     strokes : int
+    kinds : dict of str to (float, str)
+        P-value of each kind of test by itself, and what is strongest in it.
     """
 
     p_value: float
@@ -76,6 +79,7 @@ class Detection:
     lack_of_fit: float
     along: str
     strokes: int
+    kinds: dict[str, tuple[float, str]]
 
 
 def cells(runs: Sequence[Prepared]) -> list[Feature]:
@@ -104,22 +108,6 @@ def cells(runs: Sequence[Prepared]) -> list[Feature]:
     return [Feature("state", tuple(state)), Feature("time", tuple(time)), Feature("reversal", tuple(travel))]
 
 
-def lines(runs: Sequence[Prepared], band_hz: float) -> list[Feature]:
-    """Return sines and cosines of time, as pairs of neighbouring columns, for the search for spectral lines."""
-    longest = max(r.duration_s for r in runs)
-    frequencies = np.arange(SLOWEST_LINE_HZ, band_hz, 0.5 / longest)
-    found = []
-    for part in np.array_split(frequencies, max(1, math.ceil(frequencies.size / LINES_AT_A_TIME))):
-        if not part.size:
-            continue
-        columns = []
-        for r in runs:
-            angle = 2.0 * np.pi * np.outer(r.time_s, part)
-            columns.append(np.stack([np.sin(angle), np.cos(angle)], axis=2).reshape(r.time_s.size, -1))
-        found.append(Feature("spectrum", tuple(columns)))
-    return found
-
-
 def detect(
     runs: Sequence[Prepared],
     model_columns: Sequence[np.ndarray],
@@ -146,48 +134,58 @@ def detect(
         By how much each candidate lowers the held-out loss of every stroke. If nothing is missing a gain is as likely
         as a loss, or less: this sees what the score, which looks near zero only, does not.
     """
-    strokes = [(r, s) for r in runs for s in r.strokes]
-    features = [*candidates, *cells(runs), *lines(runs, weights.band_hz)]
+    count = sum(len(r.strokes) for r in runs)
+    flips = signs(count)
+    features = [*candidates, *cells(runs)]
     scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
-    live = np.array([np.count_nonzero(np.any(s != 0.0, axis=1)) for s in scores])
-    flips = signs(len(strokes))
-    names = [f.name for f in features]
-    drawn = {}
-    for name in dict.fromkeys(names):
-        of = studentised_pairs if name == "spectrum" else studentised
-        parts = [of(s, flips) for s, n, k in zip(scores, names, live, strict=True) if n == name and k > 1]
-        if not parts:
-            continue
-        # A candidate is as strong as its best column, so is a line; cells add up, for a pattern is spread over them.
-        joined = np.hstack(parts)
-        drawn[name] = joined.sum(axis=1) if name in ("state", "time", "reversal") else joined.max(axis=1)
-    if not drawn:
-        return Detection(1.0, {}, 1.0, "state", len(strokes))
-    keys = list(drawn)
-    single = p_values(np.column_stack([drawn[k] for k in keys]))
-    family = np.array([k in LACK for k in keys])
-    # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
-    groups = [np.flatnonzero(~family)] + [np.array([i]) for i in np.flatnonzero(family)]
-    if gains is not None and gains.size:
-        keys.append("gain")
-        single = np.column_stack([single, p_values(one_sided(gains, flips).max(axis=1)[:, None])])
-        family = np.append(family, False)
-        groups = [np.flatnonzero(~family[:-1]), *groups[1:], np.array([len(keys) - 1])]
-    grouped = p_values(-np.column_stack([single[:, g].min(axis=1) for g in groups if g.size]))
-    overall = p_values(-grouped.min(axis=1)[:, None])[:, 0]
-    candidate = np.array([not f and k != "gain" for k, f in zip(keys, family, strict=True)])
-    adjusted = {
-        k: float(np.mean(single[:, candidate].min(axis=1) <= single[0, i] + 1e-12))
-        for i, k in enumerate(keys)
-        if candidate[i]
+    drawn: dict[tuple[str, str], list[np.ndarray]] = {}
+    for feature, score in zip([*features, Feature("spectrum", ())], scores, strict=True):
+        if np.count_nonzero(np.any(score != 0.0, axis=1)) > 1:
+            of = studentised_pairs if feature.name == "spectrum" else studentised
+            drawn.setdefault((_kind(feature), feature.name), []).append(of(score, flips))
+    # A candidate is as strong as its best column, so is a line; cells add up, for a pattern is spread over them.
+    joined = {
+        key: np.hstack(parts).sum(axis=1) if key[0] in CELLS else np.hstack(parts).max(axis=1)
+        for key, parts in drawn.items()
     }
-    lack_keys = [k for k in keys if k in LACK]
-    lack_single = single[:, family]
-    if not lack_keys:
-        return Detection(float(overall[0]), adjusted, 1.0, "state", len(strokes))
-    lack_of_fit = float(p_values(-lack_single.min(axis=1)[:, None])[0, 0])
-    along = lack_keys[int(np.argmin(lack_single[0]))]
-    return Detection(float(overall[0]), adjusted, lack_of_fit, along, len(strokes))
+    if gains is not None and gains.size:
+        joined[("gain", "gain")] = one_sided(gains, flips).max(axis=1)
+    if not joined:
+        return Detection(1.0, {}, 1.0, "state", count, {})
+    keys = list(joined)
+    single = p_values(np.column_stack([joined[k] for k in keys]))
+    kinds = list(dict.fromkeys(kind for kind, _ in keys))
+    least = {kind: single[:, [i for i, k in enumerate(keys) if k[0] == kind]].min(axis=1) for kind in kinds}
+    # Candidates are many and overlap: they share one place in the family, beside one for each kind of cell.
+    grouped = p_values(-np.column_stack([least[kind] for kind in kinds]))
+    overall = float(_smallest(grouped)[0])
+    of_candidates = [i for i, (kind, _) in enumerate(keys) if kind in CANDIDATES]
+    adjusted: dict[str, float] = {}
+    for i in of_candidates:
+        p = float(np.mean(single[:, of_candidates].min(axis=1) <= single[0, i] + 1e-12))
+        adjusted[keys[i][1]] = min(p, adjusted.get(keys[i][1], 1.0))
+    lack = [kinds.index(kind) for kind in LACK if kind in kinds]
+    by_kind = {kind: (float(p), _strongest(keys, single, kind)) for kind, p in zip(kinds, grouped[0], strict=True)}
+    if not lack:
+        return Detection(overall, adjusted, 1.0, "state", count, by_kind)
+    along = kinds[lack[int(np.argmin(grouped[0, lack]))]]
+    return Detection(overall, adjusted, float(_smallest(grouped[:, lack])[0]), along, count, by_kind)
+
+
+def _kind(feature: Feature) -> str:
+    if feature.name in LACK:
+        return feature.name
+    return "candidates in zones" if feature.inside_zones else "candidates"
+
+
+def _smallest(p: np.ndarray) -> np.ndarray:
+    """Return the p-value of the smallest of several, per draw."""
+    return p_values(-p.min(axis=1)[:, None])[:, 0]
+
+
+def _strongest(keys: Sequence[tuple[str, str]], single: np.ndarray, kind: str) -> str:
+    places = [i for i, k in enumerate(keys) if k[0] == kind]
+    return keys[places[int(np.argmin(single[0, places]))]][1]
 
 
 def _scores(
@@ -198,19 +196,21 @@ def _scores(
     start_shift: float,
     start_bound: float,
 ) -> list[np.ndarray]:
-    """Return the scores of every feature, each of shape (strokes, q)."""
+    """Return the scores of every feature, each of shape (strokes, q), then those of the spectral lines."""
     out: list[np.ndarray] = [np.empty(0)] * len(features)
     for inside in (False, True):
         chosen = [i for i, f in enumerate(features) if f.inside_zones == inside]
         if not chosen:
             continue
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
-        tables = [m[k] for m, k in zip(model_columns, keep, strict=True)]
-        owners = [_owner(r, offset)[k] for (r, offset), k in zip(_offsets(runs), keep, strict=True)]
-        whiten = [
-            _whitener(r, t[:, -2], o, n, weights)
-            for r, t, o, (_, n) in zip(runs, tables, owners, _offsets(runs), strict=True)
+        offsets = _offsets(runs)
+        every = [_owner(r, offset) for r, offset in offsets]
+        tables = [
+            np.column_stack([_own_starts(r, m, o, n)[k], m[k]])
+            for (r, n), m, o, k in zip(offsets, model_columns, every, keep, strict=True)
         ]
+        owners = [o[k] for o, k in zip(every, keep, strict=True)]
+        whiten = [_whitener(r, t[:, -2], o, n, weights) for (r, n), t, o in zip(offsets, tables, owners, strict=True)]
         table = np.concatenate([w(t) for w, t in zip(whiten, tables, strict=True)])
         basis, response = table[:, :-1], table[:, -1]
         # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor
@@ -229,12 +229,40 @@ def _scores(
             # A column that the model explains already has nothing left but rounding.
             scores[:, np.linalg.norm(z, axis=0) < 1e-9 * np.sqrt(len(z))] = 0.0
             out[i] = scores
+        if not inside:
+            frequencies = line_frequencies_hz(max(r.duration_s for r in runs), weights.band_hz)
+            out.append(_line_scores(runs, keep, whiten, owners, belongs, q, residual, frequencies))
     return out
 
 
-def _whitener(
-    r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, weights: Weights
-) -> Callable[[np.ndarray], np.ndarray]:
+def _line_scores(
+    runs: Sequence[Prepared],
+    keep: Sequence[np.ndarray],
+    whiten: Sequence[Whitener],
+    owners: Sequence[np.ndarray],
+    belongs: np.ndarray,
+    q: np.ndarray,
+    residual: np.ndarray,
+    frequencies_hz: np.ndarray,
+) -> np.ndarray:
+    """Return the scores of the spectral lines, shape (strokes, 2 lines).
+
+    The whitener is symmetric and stays inside a stroke: what it does to a line it may as well do to what the line is
+    multiplied with.
+    """
+    parts, start = [], 0
+    for r, k, w, owner in zip(runs, keep, whiten, owners, strict=True):
+        rows = slice(start, start + int(k.sum()))
+        start = rows.stop
+        at_all = np.full(k.size, -1)
+        at_all[k] = owner
+        table = np.zeros((k.size, q.shape[1] + 1))
+        table[k] = w(np.column_stack([q[rows], residual[rows]]))
+        parts.append((at_all, table[:, -1], table[:, :-1], r.step_s))
+    return line_scores(parts, belongs @ (q * residual[:, None]), frequencies_hz)
+
+
+def _whitener(r: Prepared, shift: np.ndarray, owner: np.ndarray, offset: int, weights: Weights) -> Whitener:
     """Return the map that gives the uncertain start of each stroke the weight it has in the fit.
 
     The square root of ``I - z z' / (z'z + ridge)`` for each stroke's column ``z``.
@@ -255,6 +283,16 @@ def _whitener(
         return out
 
     return apply
+
+
+def _own_starts(r: Prepared, columns: np.ndarray, owner: np.ndarray, offset: int) -> np.ndarray:
+    """Return what starts that are all late by the same share of their own uncertainty would add.
+
+    How a motion begins before the sensor shows it is extrapolated; a wrong extrapolation is one that is wrong by a
+    share of what it extrapolates over.
+    """
+    uncertainty = np.array([0.0, *(s.onset_uncertainty_s for s in r.strokes)])
+    return columns[:, -2] * uncertainty[np.where(owner >= 0, owner - offset + 1, 0)]
 
 
 def _scaled(basis: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .folds import Folds, held_out
+from .folds import Folds
 from .profile import ROUNDS, Problem, State, refine
 
 
@@ -38,7 +38,7 @@ class Search:
 
     def visit(self, state: State) -> None:
         """Let all folds judge a state."""
-        losses, training = held_out(state.blocks, self.folds)
+        losses, training = state.blocks.held_out(self.folds)
         for k in np.flatnonzero(training < self._training):
             inside = self.folds.of_stroke == k
             self.fold_states[k] = state

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from ..model import Model, card
-from .grids import points
+from .grids import is_continuous, points
 from .prepare import Prepared
 
 
@@ -29,6 +30,9 @@ class Terms:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inner", MappingProxyType(dict(self.inner)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Terms, (self.effects, dict(self.inner)))
 
     def pairs(self) -> list[tuple[str, list[float]]]:
         """Return the terms as the core takes them."""
@@ -55,7 +59,9 @@ def start_terms(model: Model, runs: Sequence[Prepared]) -> Terms:
             tried = points(p, runs)
             values.append(float(tried[len(tried) // 2]))
             if given is not None:
-                values[-1] = float(given)
+                # Of a count the nearest that there is.
+                snap = key not in model.known and not is_continuous(p)
+                values[-1] = float(tried[np.argmin(np.abs(tried - given))]) if snap else float(given)
         inner[name] = tuple(values)
     return Terms(model.effects, inner)
 
@@ -64,7 +70,11 @@ def inner_grid(name: str, model: Model, runs: Sequence[Prepared]) -> list[tuple[
     """Return every combination of an effect's inner values to try; one empty tuple where it has none."""
     combinations: list[tuple[float, ...]] = [()]
     for p in card(name, model.structure_name).inner:
-        known = model.known.get(f"{name}.{p.key}")
+        key = f"{name}.{p.key}"
+        known = model.known.get(key)
         tried = points(p, runs) if known is None else np.array([known])
+        if key in model.start and is_continuous(p):
+            # Beside the grid and not in its place: a poor start must not keep the search from a better valley.
+            tried = np.unique(np.append(tried, model.start[key]))
         combinations = [(*c, float(v)) for c in combinations for v in tried]
     return combinations

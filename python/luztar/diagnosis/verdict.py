@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, equivalent, gain
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
-from .fit import Fit
+from .fit import Fit, predict
 from .grids import points, word
+from .misfit import rms
 from .score import Detection
 from .values import effect_values
 
@@ -73,13 +76,27 @@ def folded(fitted: Fit, found: Sequence[Candidate]) -> dict[str, str]:
             continue
         value = state.terms.inner[c.name][0]
         if word(inside[0]) == "delay":
-            least = start_uncertainty_s(fitted.runs)
+            # Less than the starts are uncertain by is what the sensor does to them, unless it shows elsewhere as well.
+            least = 0.0 if _shows_away_from_reversals(fitted, c) else start_uncertainty_s(fitted.runs)
         else:
             # Half above the smallest value: the search stops there, its least lies at or below it.
             least = 1.5 * float(points(inside[0], fitted.runs)[0])
         if value < least:
             out[c.name] = simpler
     return out
+
+
+def _shows_away_from_reversals(fitted: Fit, c: Candidate) -> bool:
+    """Whether a candidate takes the practical size off the error where the motion is under way."""
+    state = c.search.best
+    assert state is not None
+
+    def away(residual: Sequence[np.ndarray]) -> float:
+        return rms(np.concatenate([e[r.usable & ~r.zone] for r, e in zip(fitted.runs, residual, strict=True)]))
+
+    modelled = [predict(r, m, state.coefficients) for r, m in zip(fitted.runs, state.made.matrix, strict=True)]
+    with_it = [r.effort - p for r, p in zip(fitted.runs, modelled, strict=True)]
+    return away(with_it) <= (1.0 - PRACTICAL_GAIN) * away(fitted.residual)
 
 
 def admissible(fitted: Fit, c: Candidate) -> bool:
@@ -90,9 +107,8 @@ def admissible(fitted: Fit, c: Candidate) -> bool:
     return all(p.low <= values[p.key] <= p.high for p in c.card.parameters if p.role == "linear")
 
 
-def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection) -> Judgement:
-    """Decide what a look at the candidates allows to say."""
-    simpler = folded(fitted, found)
+def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler: dict[str, str]) -> Judgement:
+    """Decide what a look at the candidates allows to say; ``simpler`` are the :func:`folded` ones."""
     rivals = [c for c in found if c.name not in simpler and admissible(fitted, c)]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..model import card
+from ..model.negative import in_sense
+from .flags import flag_lines
 
 if TYPE_CHECKING:
     from .compare import Comparison
@@ -42,8 +44,8 @@ def error_line(fit: Fit) -> str:
 
 def fit_text(fit: Fit) -> str:
     """Return a fit as text."""
-    head = f"{fit.model.structure_name}: {', '.join(fit.model.effects)}"
-    return "\n".join([head, error_line(fit), *parameter_lines(fit.parameters)])
+    head = f"{fit.model.structure_name}: {', '.join(fit.model.effects) or 'no effects'}"
+    return "\n".join([head, error_line(fit), *parameter_lines(fit.parameters), *flag_lines(fit.flags)])
 
 
 def comparison_text(comparison: Comparison) -> str:
@@ -77,11 +79,12 @@ def diagnosis_text(look: Diagnosis) -> str:
     lines = [verdict_sentence(look.verdict, look.named, look.fit.model.structure_name)]
     if look.judgement.why:
         lines.append(f"({look.judgement.why})")
-    lines += [error_line(look.fit), *_where(look.where), "candidates by unseen error:"]
+    lines += [error_line(look.fit), *flag_lines(look.fit.flags), *_where(look.where), "candidates by unseen error:"]
     for c in look.candidates[:8]:
         marks = [m for m, on in (("in the set", c.in_set), ("decoy", c.decoy)) if on]
         if c.same_as:
-            marks.append(f"same as {c.same_as}")
+            inside = c.same_as in look.fit.model.effects
+            marks.append(f"adds nothing to {c.same_as}" if inside else f"same as {c.same_as}")
         lines.append(f"  {c.effect:<20} {number(c.held_out_rms):>10}  gain {100 * c.gain:6.1f} %  {', '.join(marks)}")
     if look.next_experiment:
         lines.append(f"next: {look.next_experiment.text}")
@@ -107,6 +110,19 @@ def ladder_lines(study: Study) -> list[str]:
     return lines
 
 
+def _turned(study: Study) -> list[str]:
+    """Return a line for every effect that was added and does the opposite of what its name says."""
+    last = study.steps[-1].fit
+    lines = []
+    for name in (s.added for s in study.steps if s.added):
+        described = card(name, last.model.structure_name)
+        values = {k.partition(".")[2]: e.value for k, e in last.parameters.items() if k.startswith(f"{name}.")}
+        found = in_sense(described, values)
+        if found != described:
+            lines.append(f"note: {name} is negative. {found.look}")
+    return lines
+
+
 def study_text(study: Study) -> str:
     """Return a study as text."""
     lines = ["unseen error, step by step:", *ladder_lines(study)]
@@ -114,8 +130,10 @@ def study_text(study: Study) -> str:
     for s in study.steps:
         if s.next_experiment and len(s.set) > 1:
             lines.append(f"next: {s.next_experiment.text}")
+    lines += _turned(study)
     lines += [
         "parameters of the last model (95 % intervals by stroke):",
         *parameter_lines(study.steps[-1].fit.parameters),
+        *flag_lines(study.steps[-1].fit.flags),
     ]
     return "\n".join(lines)

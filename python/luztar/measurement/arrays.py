@@ -10,9 +10,9 @@ import numpy as np
 
 from ..errors import MeasurementError, ParameterError
 from . import units as _units
-from .check import inspect
+from .check import assumed_is_plausible, inspect
 from .columns import QUANTITY
-from .integrity import Integrity
+from .integrity import Finding, Integrity
 from .run import CHANNEL_UNITS, as_si
 
 
@@ -43,6 +43,7 @@ def from_arrays(
     n = time_s.size
     converted = {key: as_si(key, values, n) * sizes[key][1] for key, values in channels.items()}
     time_s, findings, steps = inspect(time_s, converted)
+    findings = [*_assumed(converted, units or {}), *findings]
     integrity = Integrity(
         rows_declared=None,
         rows_read=int(n),
@@ -53,6 +54,21 @@ def from_arrays(
         findings=tuple(findings),
     )
     return str(name), time_s, converted, integrity, "arrays", None
+
+
+def _assumed(channels: Mapping[str, np.ndarray], units: Mapping[str, str]) -> list[Finding]:
+    """Return a finding where units were not given: one remark, and a doubt for numbers that can hardly be SI."""
+    bare = [key for key in channels if key not in units]
+    if not bare:
+        return []
+    listed = ", ".join(f"{key} in {CHANNEL_UNITS[key]}" for key in bare)
+    found = [Finding("unit_assumed", f"no unit was given: {listed} (units= says otherwise)", False)]
+    for key in bare:
+        if not assumed_is_plausible(key, channels[key]):
+            used, other = CHANNEL_UNITS[key], {"position": "mm"}.get(key, "deg")
+            text = f"{key} is taken as {used}, and its numbers are too large for that: units={{'{key}': '{other}'}}?"
+            found.append(Finding("unit_assumed", text, True, key))
+    return found
 
 
 def check_rate(sample_rate_hz: float) -> float:

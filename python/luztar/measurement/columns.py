@@ -271,7 +271,7 @@ def resolve(
         raise MeasurementError(
             f"there is no time column among {_listed(columns)}",
             where,
-            "Name it with --map time=COLUMN, or declare the sample rate.",
+            "Name it with --map time=COLUMN, or declare the rate in Python: luztar.read(..., sample_rate_hz=...).",
         )
     if not any(key != "time" for key in sources):
         raise MeasurementError(

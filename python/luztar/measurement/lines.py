@@ -85,7 +85,11 @@ class Block:
 def split(line: str, separator: str) -> list[str]:
     """Return the fields of one line, quotes taken off, blanks around them too."""
     if '"' in line:
-        return [field.strip() for field in next(csv.reader([line], delimiter=separator), [])]
+        try:
+            return [field.strip() for field in next(csv.reader([line], delimiter=separator), [])]
+        except csv.Error:
+            # A quote that never ends, in what is no table at all: its fields are text either way.
+            pass
     return [field.strip() for field in line.split(separator)]
 
 

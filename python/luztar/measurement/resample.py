@@ -54,7 +54,7 @@ def resample(run: Run, sample_rate_hz: float, *, method: str = "linear") -> Run:
             raise MeasurementError(
                 f"cannot resample across this: {finding.text}",
                 run.name,
-                "Take the parts first: run.split_at_gaps(), then resample each.",
+                "Resample the parts before and after, each a file of its own (Python: run.split_at_gaps()).",
             )
     if not (run.duration_s > 0.0 and (np.diff(run.time_s) > 0.0).all()):
         raise MeasurementError("the time does not run forward", run.name, "Look at the time column.")

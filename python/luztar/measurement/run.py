@@ -43,7 +43,7 @@ class Run:
     sample_rate_hz : float [Hz], > 0, optional
         For arrays sampled evenly from time 0.
     units : mapping of channel to unit, optional
-        Units of the arrays given; a channel not named is in SI.
+        Units of the arrays given; a channel not named is taken as SI, with a finding.
     name : str
         What the run is called in results.
     **channels : array_like, shape (n,)
@@ -192,7 +192,9 @@ class Run:
         for finding in self.integrity.findings:
             if finding.kind in ("gap", "duplicate_time", "reversed_time"):
                 raise MeasurementError(
-                    f"the time axis is broken: {finding.text}", self.name, "Take the parts: run.split_at_gaps()."
+                    f"the time axis is broken: {finding.text}",
+                    self.name,
+                    "Export the parts before and after as files of their own (Python: run.split_at_gaps()).",
                 )
         for finding in self.integrity.findings:
             if finding.kind == "uneven":
@@ -201,7 +203,7 @@ class Run:
                 raise MeasurementError(
                     f"the sampling is uneven: {finding.text}",
                     self.name,
-                    f"Resample: run.resample({rate}), or read(..., resample_hz={rate}).",
+                    f"Bring it to an even rate: --resample {rate} (Python: run.resample({rate})).",
                 )
         return self
 

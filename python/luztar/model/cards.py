@@ -9,6 +9,7 @@ from typing import Any
 
 from .. import _core
 from ..errors import ModelError
+from . import axis_words
 
 # An axis has newtons and metres where a rig has newton metres and radians. A phase stays an angle.
 _AXIS_UNITS = (("kg_m2", "kg"), ("nm", "n"), ("rad3", "m3"), ("rad2", "m2"), ("rad", "m"))
@@ -136,7 +137,10 @@ def _all(structure: str) -> dict[str, Card]:
     for raw in _core.effect_cards():
         parameters = tuple(Parameter(**p) for p in raw["parameters"])
         if structure == "axis":
-            parameters = tuple(replace(p, key=axis_key(p.key)) for p in parameters)
+            parameters = tuple(
+                replace(p, key=axis_key(p.key), meaning=axis_words.meaning(p.meaning)) for p in parameters
+            )
+            raw |= {"typical": "", **axis_words.WORDS.get(raw["name"], {})}
         fields: dict[str, Any] = {**raw, "parameters": parameters}
         found[raw["name"]] = Card(**fields)
     return found

@@ -19,13 +19,13 @@ def _schema() -> Any:
     from pydantic import BaseModel, ConfigDict, Field
 
     class ComparisonPart(BaseModel):
-        model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+        model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
         band_hz: float | None = Field(default=None, gt=0)
         filter_already_applied: bool = False
         decimate: int | None = Field(default=None, ge=1)
 
     class ModelFile(BaseModel):
-        model_config = ConfigDict(extra="forbid", allow_inf_nan=False, populate_by_name=True)
+        model_config = ConfigDict(extra="forbid", allow_inf_nan=False, populate_by_name=True, strict=True)
         version: int = Field(alias="schema")
         structure: str
         effects: list[str] | None = None
@@ -95,7 +95,13 @@ def load(path: str | os.PathLike[str]) -> Model:
 
 
 def save(model: Model, path: str | os.PathLike[str]) -> None:
-    """Write a model as a TOML file that :func:`load` reads back."""
+    """Write a model as a TOML file that :func:`load` reads back.
+
+    Raises
+    ------
+    ModelError
+        Where the file cannot be written.
+    """
     quoted = ", ".join(f'"{e}"' for e in model.effects)
     lines = [
         f"schema = {SCHEMA}",
@@ -114,4 +120,8 @@ def save(model: Model, path: str | os.PathLike[str]) -> None:
     if any(value is not None for _, value in set_by_user):
         lines += ["", "[comparison]"]
         lines += [f"{k} = {str(v).lower() if isinstance(v, bool) else v!r}" for k, v in set_by_user if v is not None]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    try:
+        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except OSError as error:
+        remedy = "Make the folder first, or name another place."
+        raise ModelError(f"cannot be written ({error.strerror})", os.fspath(path), remedy) from None

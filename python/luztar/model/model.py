@@ -56,7 +56,7 @@ class Model:
     known : mapping
         Parameters that are given and not estimated, ``{"coulomb.level_nm": 0.7}``; ``pitch_m`` of an axis.
     start : mapping
-        Start values of inner parameters.
+        Start values of inner parameters, tried beside those of the search's own grid.
     comparison : Comparison
     """
 
@@ -74,19 +74,32 @@ class Model:
         seen: set[str] = set()
         for name in self.effects:
             needed = card(name, self.structure_name)
+            if needed.is_decoy:
+                remedy = "It competes in every diagnosis by itself; take it out of the effects."
+                raise ModelError(f"'{name}' is a decoy without physics", "effects", remedy)
             if name in seen:
                 raise ModelError(f"the effect '{name}' is listed twice", "effects", "Remove one of them.")
             seen.add(name)
             if needed.needs and needed.needs not in self.effects:
                 raise ModelError(f"'{name}' needs '{needed.needs}'", "effects", f"Add '{needed.needs}' to the effects.")
+            if needed.per_turn and self.structure_name == "axis" and "pitch_m" not in self.known:
+                remedy = "Give the travel per turn, pitch_m, among the known parameters: Model.axis(pitch_m=0.01)."
+                raise ModelError(f"'{name}' counts turns, and an axis has none without its pitch", "known", remedy)
         for where, values in (("known", self.known), ("start", self.start)):
             for key, value in values.items():
                 self._check(where, key, value)
+        for key in self.start:
+            if key in self.known:
+                raise ModelError(f"{key} is known and has a start value too", "start", "Take it out of one of them.")
         band, decimate = self.comparison.band_hz, self.comparison.decimate
         if band is not None and not (math.isfinite(band) and band > 0):
             raise ModelError(f"the band is {band} Hz", "comparison.band_hz", "Give a frequency above 0.")
         if decimate is not None and decimate < 1:
             raise ModelError(f"decimate is {decimate}", "comparison.decimate", "Give a whole number from 1.")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A read-only view of a dict cannot be pickled.
+        return (Model, (self.structure_name, self.effects, dict(self.known), dict(self.start), self.comparison))
 
     def _check(self, where: str, key: str, value: float) -> None:
         if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):

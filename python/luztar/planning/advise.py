@@ -39,6 +39,7 @@ LOOKALIKES: dict[str, tuple[str, ...]] = {
     "presliding": ("freeplay", "delay"),
     "freeplay": ("presliding", "delay"),
     "delay": ("presliding", "inertia"),
+    "lead": ("inertia", "presliding"),
     "inertia": ("delay",),
     "warmup": ("drift",),
     "drift": ("warmup",),

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..diagnosis.equations import Weights, columns
 from ..diagnosis.prepare import Prepared
-from ..diagnosis.profile import Problem, State, owners, refine, state, with_effect
+from ..diagnosis.profile import Problem, State, owners, refine, state
 from ..diagnosis.terms import Terms, inner_grid
 from ..model import Model, card
 from .rehearse import Sensor, minutes, rehearse, with_effort
@@ -118,7 +118,7 @@ class Rehearsal:
         if len(points) > COARSE_POINTS:
             chosen = np.unique(np.linspace(0, len(points) - 1, COARSE_POINTS).round().astype(int))
             points = [points[i] for i in chosen]
-        return min((with_effect(self.problem, self.base, rival, p) for p in points), key=lambda s: s.loss)
+        return min((state(self.problem, self.base.terms.having(rival, p)) for p in points), key=lambda s: s.loss)
 
     def refined(self, rival: str, near: State) -> State:
         """Return a rival's best imitation."""

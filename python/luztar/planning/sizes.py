@@ -144,7 +144,7 @@ def _crossing(table: Signatures, c: Card, typical: Variant, errors: float) -> fl
     if not above.size:
         return None
     first = int(above[0])
-    if c.name == "delay":
+    if c.name in ("delay", "lead"):
         # The sensor may show the starts late by their uncertainty, and the fit allows for as much again.
         return _between(values, heights, first, errors) + 2.0 * table.start_s
     # Below half above the first point of the grid a verdict calls it sharp friction.

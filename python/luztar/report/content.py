@@ -14,12 +14,13 @@ from ..diagnosis.chance import p_value_floor
 from ..diagnosis.verdict import MANY_STROKES
 from ..diagnosis.words import number
 from ..model import card
+from ..model.negative import in_sense
 from . import checked, sentences
 from .style import rounded
 
 if TYPE_CHECKING:
     from ..diagnosis.diagnose import Diagnosis, Tried
-    from ..diagnosis.study import Study
+    from ..diagnosis.study import Step, Study
     from ..tb038.check import Check
 
 # A verdict is told by a word and a class of colour, never by the colour alone.
@@ -79,6 +80,7 @@ def _study(study: Study) -> dict[str, Any]:
         "meaning": sentences.VERDICT_MEANING[study.verdict],
         "why": study.last.judgement.why,
         "error": sentences.error_sentence(study),
+        "motion": fit.model.structure.motion,
         "effort": fit.model.structure.effort,
         "unit": fit.noise_floor.unit,
         "floor": {
@@ -94,6 +96,7 @@ def _study(study: Study) -> dict[str, Any]:
         "first": _look(study.first),
         "last": _look(study.last) if len(study.looks) > 1 else None,
         "parameters": _parameters(study),
+        "flags": [f.text for f in fit.flags],
         "provisional": any(s.provisional for s in study.steps),
         "held_out": len(study.held_out) > 0,
         "runs": len(study.runs),
@@ -110,9 +113,9 @@ def _steps(study: Study) -> list[dict[str, Any]]:
                 "place": place,
                 "name": "model as given" if step.added is None else card(step.added, structure).title,
                 "effect": step.added,
-                "look": None if step.added is None else card(step.added, structure).look,
+                "look": None if step.added is None else _look_of(step),
                 "others": [card(n, structure).title for n in step.set if n != step.added],
-                "effects": ", ".join(step.fit.model.effects),
+                "effects": ", ".join(step.fit.model.effects) or "no effects",
                 "unseen": rounded(e.held_out_rms),
                 "unseen_percent": f"{100 * e.held_out_relative:.1f}",
                 "seen": rounded(e.rms),
@@ -124,10 +127,16 @@ def _steps(study: Study) -> list[dict[str, Any]]:
     return rows
 
 
+def _look_of(step: Step) -> str:
+    name = step.added or ""
+    values = {k.partition(".")[2]: e.value for k, e in step.fit.parameters.items() if k.startswith(f"{name}.")}
+    return in_sense(card(name, step.fit.model.structure_name), values).look
+
+
 def _look(look: Diagnosis) -> dict[str, Any]:
     structure = look.fit.model.structure_name
     return {
-        "effects": ", ".join(look.fit.model.effects),
+        "effects": ", ".join(look.fit.model.effects) or "no effects",
         "verdict": look.verdict,
         "why": look.judgement.why,
         "strokes": look.detection.strokes,
@@ -155,7 +164,7 @@ def _look(look: Diagnosis) -> dict[str, Any]:
 
 def _remark(c: Tried, look: Diagnosis) -> str:
     words = ["decoy"] if c.decoy else []
-    words += [f"came out as {c.same_as}"] if c.same_as else []
+    words += [sentences.came_out(c, look)] if c.same_as else []
     if look.named and c.in_set:
         words += ["best" if c.effect == look.named[0] else "cannot be told from the best"]
     return ", ".join(words)
@@ -219,7 +228,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
         model = study.model
         rows += [
             ("Structure", f"{model.structure_name}: {model.structure.motion} in, {model.structure.effort} out"),
-            ("Model as given", ", ".join(study.steps[0].fit.model.effects)),
+            ("Model as given", ", ".join(study.steps[0].fit.model.effects) or "no effects"),
             ("Model after the last step", ", ".join(model.effects)),
             ("Given, not estimated", ", ".join(f"{k} = {number(v)}" for k, v in model.known.items()) or "nothing"),
             ("Band of the comparison", f"0 to {model.band_hz:g} Hz"),

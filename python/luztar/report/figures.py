@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from ..diagnosis.fit import Fit
     from ..diagnosis.study import Step, Study
 
+# The words at the end of the longest bar are 130 points wide, a third of what long labels leave of a printed page.
+LABEL_ROOM = 1.55
 # An interval wider than this is drawn to the edge: it says "not determined" either way.
 WIDEST_PERCENT = 100.0
 
@@ -63,7 +65,9 @@ def ladder(study: Study) -> Any:
         annotation_position="top",
     )
     # Room for the words at the end of the longest bar.
-    picture.update_xaxes(range=[0.0, 1.3 * top], title_text=f"unseen error, rms [{floor.unit}] (% of the measurement)")
+    picture.update_xaxes(
+        range=[0.0, LABEL_ROOM * top], title_text=f"unseen error, rms [{floor.unit}] (% of the measurement)"
+    )
     picture.update_yaxes(
         tickvals=list(range(len(steps))), ticktext=labels, range=[len(steps) - 0.45, -0.55], showgrid=False
     )
@@ -97,7 +101,7 @@ def candidates(diagnosis: Diagnosis) -> Any:
     # Differences of less than a few per cent must not fill the picture, nor must what only does harm.
     spare = max(0.5 * (base - low), 0.04 * base)
     edge = base + spare
-    beyond = "; triangles: beyond" if any(v > edge for v in values) else ""
+    beyond = "<br>triangles: beyond the edge" if any(v > edge for v in values) else ""
     best = "best" if len(diagnosis.named) == 1 else "cannot be told from the best"
     groups: list[tuple[str, str, str, list[Tried]]] = [
         (best, AFTER, "circle", [c for c in shown if _offered(c, diagnosis)]),
@@ -149,7 +153,8 @@ def _offered(c: Tried, diagnosis: Diagnosis) -> bool:
 
 
 def _folded(c: Tried) -> str:
-    return f" (came out as {c.same_as})" if c.same_as else ""
+    # Long labels leave no room for the picture on paper; the table says it in words.
+    return f" (= {c.same_as})" if c.same_as else ""
 
 
 def parameters(fit: Fit) -> Any:

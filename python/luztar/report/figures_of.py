@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from . import figures
-from .style import FONT, INK, plain
+from .style import FONT, INK
 
 if TYPE_CHECKING:
     from ..diagnosis.study import Study
@@ -48,10 +48,6 @@ def values(figure: Any) -> dict[str, Any]:
 
 def _of_check(check: Check) -> dict[str, Any]:
     made = values(check.figure())
-    for trace in made["data"]:
-        # The check names its curves after the files; a report must not take a tag in a name for one.
-        for key in ("name", "legendgroup"):
-            trace[key] = plain(trace.get(key, ""))
     made["layout"].pop("template", None)
     made["layout"] |= {
         "template": "none",
@@ -63,6 +59,4 @@ def _of_check(check: Check) -> dict[str, Any]:
         "margin": {"l": 60, "r": 20, "t": 20, "b": 50},
         "legend": {"orientation": "h", "y": -0.14},
     }
-    highest = max([check.rules.mean_max_nm, *(v.max_abs_nm or 0.0 for v in check.verifications)])
-    made["layout"]["yaxis"] |= {"range": [-1.12 * highest, 1.12 * highest]}
     return made

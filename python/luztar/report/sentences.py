@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..model import card
+from ..model.negative import in_sense
 from .style import rounded
 
 if TYPE_CHECKING:
-    from ..diagnosis.diagnose import Diagnosis
+    from ..diagnosis.diagnose import Diagnosis, Tried
     from ..diagnosis.study import Study
     from ..tb038.check import Check
 
@@ -108,6 +109,23 @@ def error_sentence(study: Study) -> str:
     )
 
 
+def values_found(study: Study, name: str) -> dict[str, float]:
+    """Return an effect's parameters as the study found them: in the last model, else in the last look that tried it."""
+    fitted = {
+        k.partition(".")[2]: e.value for k, e in study.steps[-1].fit.parameters.items() if k.startswith(f"{name}.")
+    }
+    tried = [c.parameters for look in reversed(study.looks) for c in look.candidates if c.effect == name]
+    return fitted or (tried[0] if tried else {})
+
+
+def came_out(c: Tried, look: Diagnosis) -> str:
+    """Return what a candidate turned out to be where its best values make it a simpler effect; else nothing."""
+    if not c.same_as:
+        return ""
+    # Beside what is in the model already it does nothing, and its gain is chance.
+    return f"adds nothing to {c.same_as}" if c.same_as in look.fit.model.effects else f"came out as {c.same_as}"
+
+
 def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
     """Return what to do next: (why, what), the most useful first; nothing where nothing is to be done.
 
@@ -120,13 +138,14 @@ def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
     if study is None:
         return found
     structure = study.model.structure_name
+    found += _offset_or_direction(study, check)
     names: list[str] = []
     for step in study.steps:
         if step.added is not None and not step.provisional:
             names += [n for n in step.set or (step.added,) if n not in names]
     names += [n for n in study.last.named if n not in names and study.verdict != "unexplained"]
     for name in names:
-        entry = card(name, structure)
+        entry = in_sense(card(name, structure), values_found(study, name))
         found.append((entry.title, f"{entry.check} Usual cause: {_lower(entry.cause)}"))
     seen: set[str] = set()
     for experiment in [*(s.next_experiment for s in study.steps if not s.provisional), study.last.next_experiment]:
@@ -143,6 +162,25 @@ def actions(study: Study | None, check: Check | None) -> list[tuple[str, str]]:
             )
         )
     return found
+
+
+def _offset_or_direction(study: Study, check: Check | None) -> list[tuple[str, str]]:
+    """Say how much of the hysteresis centre is an offset where the study found friction that has a direction."""
+    both = [n for n in study.named if n in ("asymmetric_coulomb", "asymmetric_viscous")]
+    offset = study.steps[-1].fit.parameters.get("offset.level_nm")
+    if check is None or check.offset_nm is None or offset is None or not offset.identifiable or not both:
+        return []
+    friction = titles(both, study.model.structure_name, "and")
+    size = f"{offset.value:+.3f} Nm"
+    if offset.low is not None and offset.high is not None:
+        size += f" ({offset.low:+.3f} to {offset.high:+.3f})"
+    return [
+        (
+            "Offset",
+            f"Of the hysteresis centre of {check.offset_nm:+.3f} Nm the study takes {size} for the sensor's offset and "
+            f"the rest for {friction}: shift the analogue offset by no more than that.",
+        )
+    ]
 
 
 def _to_tell(separates: Sequence[str], structure: str) -> str:

@@ -120,13 +120,13 @@ class Filter:
         """
         try:
             y = self._push(chunk)
-            if y is None:
-                x = vector("chunk", chunk, minimum=0, finite=False)
-                y = np.empty_like(x)
-                self._core.push_into(x, y)
         except ParameterError:
-            refuse_not_finite("chunk", np.asarray(chunk))
+            refuse_not_finite("chunk", chunk)
             raise
+        if y is None:  # not a contiguous vector of doubles
+            x = vector("chunk", chunk, minimum=0)
+            y = np.empty_like(x)
+            self._core.push_into(x, y)
         return y
 
     def push_into(self, chunk: np.ndarray, out: np.ndarray) -> None:

@@ -52,16 +52,11 @@ def advise(
     cured = _cured_by_centring([*too_high, *too_low], centred, rules)
     if cured and offset_nm is not None:
         lines.append(
-            f"Shift the analogue offset by {-offset_nm:+.3f} Nm and take the readings again "
-            f"({section('shift_offset')}): the hysteresis is centred at {offset_nm:+.3f} Nm, and about 0 every mean "
-            "would be within the limits. The option to centre shows this on the data at hand."
+            f"The hysteresis is centred at {offset_nm:+.3f} Nm, and about 0 every mean would be within the limits (the "
+            f"option to centre shows this on the data at hand). {_whose(rules)}"
         )
     elif offset_nm is not None and abs(offset_nm) >= OFFSET_WORTH_SAYING_NM:
-        lines.append(
-            f"The hysteresis is centred at {offset_nm:+.3f} Nm; the analogue offset may be shifted by "
-            f"{-offset_nm:+.3f} Nm before the readings ({section('shift_offset')}). Check that the load cell was "
-            f"zeroed ({section('zero_load_cell')})."
-        )
+        lines.append(f"The hysteresis is centred at {offset_nm:+.3f} Nm. {_whose(rules)}")
     if too_high and not cured:
         lines.append(
             f"The friction is too high: loosen the two thumb screws of the motor assembly by a quarter turn and take "
@@ -82,6 +77,16 @@ def advise(
         )
     lines += _repeat(verifications, records, n_tests, same, rules)
     return tuple(lines)
+
+
+def _whose(rules: RuleSet) -> str:
+    """Return how to tell a sensor's offset, which may be shifted away, from friction that differs by direction."""
+    zero, shift = rules.section("zero_load_cell"), rules.section("shift_offset")
+    return (
+        f"Read the load cell with nothing attached ({zero}): what it shows is an offset, to be shifted away before "
+        f"the readings are taken again ({shift}); the rest is friction that differs between the directions, which no "
+        "shift may hide."
+    )
 
 
 def _units(verifications: Sequence[Verification], records: Sequence[Record], rules: RuleSet) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 # Points per verification, shared by its crossings: a screen has no more columns, and a report must stay small.
 MAX_POINTS = 2000
 MIN_POINTS_PER_CROSSING = 50
+# Above the highest curve or limit, for the limit's words.
+ROOM = 1.12
 
 
 def figure(check: Check) -> Any:
@@ -33,6 +36,7 @@ def figure(check: Check) -> Any:
     colour = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
     shown: set[tuple[str, str]] = set()
     crossings = Counter((trace.run, trace.direction) for trace in check.traces)
+    # plotly reads tags, links among them, in names: a file's name stays text.
     for trace in check.traces:
         key = (trace.run, trace.direction)
         angle, torque = thinned(trace, max(MAX_POINTS // crossings[key], MIN_POINTS_PER_CROSSING))
@@ -40,8 +44,8 @@ def figure(check: Check) -> Any:
             x=angle,
             y=torque,
             mode="lines",
-            name=f"{trace.run} {trace.direction}",
-            legendgroup=" ".join(key),
+            name=escape(f"{trace.run} {trace.direction}", quote=False),
+            legendgroup=escape(" ".join(key), quote=False),
             showlegend=key not in shown,
             line={"color": colour[trace.run], "width": 1},
         )
@@ -54,8 +58,8 @@ def figure(check: Check) -> Any:
             x=ends,
             y=[v.intercept_nm + v.slope_nm_per_deg * x for x in ends],
             mode="lines",
-            name=f"{v.run} {v.direction} trend",
-            legendgroup=f"{v.run} {v.direction}",
+            name=escape(f"{v.run} {v.direction} trend", quote=False),
+            legendgroup=escape(f"{v.run} {v.direction}", quote=False),
             showlegend=False,
             line={"color": colour[v.run], "width": 2, "dash": "solid" if v.direction == "increasing" else "dash"},
         )
@@ -66,11 +70,13 @@ def figure(check: Check) -> Any:
                 line={"color": "black", "width": 1, "dash": "dot"},
                 annotation_text=f"{word} {sign * level:+g} Nm",
             )
+    highest = max([rules.mean_max_nm, *(v.max_abs_nm or 0.0 for v in check.verifications)])
     centred = ", hysteresis centre removed" if check.centred else ""
     picture.update_layout(
         title=f"{check.rule_set}: {check.verdict}{centred}",
         xaxis={"title": "angle [deg]", "range": [-1.05 * half, 1.05 * half]},
-        yaxis={"title": "torque [Nm]"},
+        # Both upper limits in sight, whichever way the torque lies.
+        yaxis={"title": "torque [Nm]", "range": [-ROOM * highest, ROOM * highest]},
         template="plotly_white",
     )
     return picture

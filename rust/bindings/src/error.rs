@@ -16,6 +16,46 @@ impl From<luztar::Error> for CoreError {
 
 impl From<CoreError> for PyErr {
     fn from(error: CoreError) -> Self {
-        ParameterError::new_err(error.0.to_string())
+        ParameterError::new_err(parts(error.0))
+    }
+}
+
+/// What is wrong, where, and what to do: the three parts every error of the Python side has.
+fn parts(error: luztar::Error) -> (String, String, String) {
+    use luztar::Error::{Length, NonFinite, OutOfRange, Singular, Unknown};
+    match error {
+        NonFinite { name, index, value } => (
+            format!("{name} holds {value} at index {index}"),
+            name.to_owned(),
+            "Remove or split the record there; every value must be finite.".to_owned(),
+        ),
+        OutOfRange {
+            name,
+            value,
+            interval,
+        } => (
+            format!("{name} is {value} but must lie in {interval}"),
+            name.to_owned(),
+            format!("Give a value in {interval}."),
+        ),
+        Length {
+            name,
+            expected,
+            got,
+        } => (
+            format!("{name} has {got} values but {expected} are needed"),
+            name.to_owned(),
+            "Give arrays of the length needed.".to_owned(),
+        ),
+        Unknown { what, name, known } => (
+            format!("unknown {what} '{name}'"),
+            what.to_owned(),
+            format!("Known are: {known}."),
+        ),
+        Singular { name, reason } => (
+            format!("{name} cannot be determined: {reason}"),
+            name.to_owned(),
+            "Give data that vary in what is to be told apart.".to_owned(),
+        ),
     }
 }

@@ -16,7 +16,7 @@ mod _core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::driven::Recording;
+    use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]

@@ -3,7 +3,7 @@
 use luztar::signal::{self as core, Band, CutoffAt, Edges, InstructionSet, Passes, Scale, uneven};
 use numpy::{
     PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1,
-    PyReadwriteArray2, PyUntypedArrayMethods,
+    PyReadwriteArray2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
@@ -12,17 +12,20 @@ use crate::error::CoreError;
 /// Below this many samples releasing the interpreter costs more than it gives: a few microseconds of work.
 pub const WORTH_DETACHING: usize = 4096;
 
-/// Two contiguous vectors of doubles apart from each other, the second writable; None for anything else.
+/// The array if it is a contiguous vector of doubles and nothing more: a masked array is not.
+pub fn plain_vector<'a, 'py>(x: &'a Bound<'py, PyAny>) -> Option<&'a Bound<'py, PyArray1<f64>>> {
+    x.cast_exact::<PyUntypedArray>().ok()?;
+    let x = x.cast::<PyArray1<f64>>().ok()?;
+    (x.is_c_contiguous() && x.is_aligned()).then_some(x)
+}
+
+/// Two plain vectors apart from each other, the second writable; None for anything else.
 pub fn plain<'py>(
     x: &Bound<'py, PyAny>,
     out: &Bound<'py, PyAny>,
 ) -> Option<(PyReadonlyArray1<'py, f64>, PyReadwriteArray1<'py, f64>)> {
-    let (x, out) = (
-        x.cast::<PyArray1<f64>>().ok()?,
-        out.cast::<PyArray1<f64>>().ok()?,
-    );
-    let usable = |array: &Bound<'py, PyArray1<f64>>| array.is_c_contiguous() && array.is_aligned();
-    if !usable(x) || !usable(out) || x.len() != out.len() {
+    let (x, out) = (plain_vector(x)?, plain_vector(out)?);
+    if x.len() != out.len() {
         return None;
     }
     Some((x.try_readonly().ok()?, out.try_readwrite().ok()?))

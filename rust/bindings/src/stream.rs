@@ -8,7 +8,7 @@ use numpy::{
 use pyo3::prelude::*;
 
 use crate::error::CoreError;
-use crate::signal::{Butterworth, WORTH_DETACHING, plain};
+use crate::signal::{Butterworth, WORTH_DETACHING, plain, plain_vector};
 
 /// A causal filter with its memory.
 #[pyclass(module = "luztar._core")]
@@ -32,12 +32,9 @@ impl Filter {
         py: Python<'py>,
         x: &Bound<'py, PyAny>,
     ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        let Ok(x) = x.cast::<PyArray1<f64>>() else {
+        let Some(x) = plain_vector(x) else {
             return Ok(None);
         };
-        if !x.is_c_contiguous() {
-            return Ok(None);
-        }
         let x = x.readonly();
         let out = PyArray1::zeros(py, x.len(), false);
         self.push_into(py, x, out.readwrite())?;

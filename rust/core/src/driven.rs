@@ -4,12 +4,16 @@
 mod cache;
 mod columns;
 mod contact;
+mod equations;
 mod kinematics;
 mod recording;
 mod resolution;
+mod rests;
 mod staircase;
+mod start;
 mod strokes;
 
 pub use columns::{Term, inner_of};
+pub use equations::{Blocks, Rows, solve};
 pub use recording::{Band, Recording, Travel};
 pub use strokes::Stroke;

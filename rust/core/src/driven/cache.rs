@@ -1,16 +1,15 @@
 //! Filtered columns kept for the next model that needs them: a search varies one effect at a time.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::Error;
 use crate::effects::Contact;
 
-/// The columns of one effect at full rate.
-pub type Columns = Arc<Vec<Vec<f64>>>;
-
-/// Columns are kept until this many of them are there; a model has five to ten, a search varies one or two at a time.
-const CAPACITY: usize = 48;
+/// So many bytes are kept, but at least and at most so many entries: a model has five to ten columns of which a search
+/// varies one or two at a time; the grids of all candidates together have some 250 points.
+const BYTES: usize = 16 << 20;
+const FEWEST: usize = 48;
+const MOST: usize = 256;
 
 /// What a column depends on: the effect, its inner parameters and, for friction, the contact; floats by their bits.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -38,74 +37,88 @@ impl Key {
 }
 
 /// A bounded store, shared by threads.
-#[derive(Debug, Default)]
-pub struct Cache(Mutex<Store>);
+#[derive(Debug)]
+pub struct Cache<V>(Mutex<Store<V>>);
 
-#[derive(Debug, Default)]
-struct Store {
-    columns: HashMap<Key, (Columns, u64)>,
+#[derive(Debug)]
+struct Store<V> {
+    kept: HashMap<Key, (Arc<V>, u64)>,
     clock: u64,
+    capacity: usize,
 }
 
-impl Cache {
+impl<V> Cache<V> {
+    /// A cache for values of `samples` numbers each.
+    pub fn new(samples: usize) -> Self {
+        let bytes = (samples * size_of::<f64>()).max(1);
+        Self(Mutex::new(Store {
+            kept: HashMap::new(),
+            clock: 0,
+            capacity: (BYTES / bytes).clamp(FEWEST, MOST),
+        }))
+    }
+
     /// Returns what is kept under the key, or makes and keeps it. Made outside the lock: two threads may both make it.
     ///
     /// # Errors
     /// What `make` returns.
-    pub fn get(
-        &self,
-        key: Key,
-        make: impl FnOnce() -> Result<Vec<Vec<f64>>, Error>,
-    ) -> Result<Columns, Error> {
-        if let Some(found) = self.look_up(&key) {
+    pub fn get<E>(&self, key: Key, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
+        if let Some(found) = self.store().look_up(&key) {
             return Ok(found);
         }
         let made = Arc::new(make()?);
-        // A panic elsewhere leaves a store that is whole: it only holds finished columns.
-        let mut store = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if store.columns.len() >= CAPACITY {
-            let oldest = store
-                .columns
-                .iter()
-                .min_by_key(|(_, (_, stamp))| *stamp)
-                .map(|(k, _)| k.clone());
-            if let Some(oldest) = oldest {
-                store.columns.remove(&oldest);
-            }
-        }
-        store.clock += 1;
-        let stamp = store.clock;
-        store.columns.insert(key, (Arc::clone(&made), stamp));
+        self.store().keep(key, Arc::clone(&made));
         Ok(made)
     }
 
-    fn look_up(&self, key: &Key) -> Option<Columns> {
-        let mut store = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        store.clock += 1;
-        let stamp = store.clock;
-        store.columns.get_mut(key).map(|(columns, last)| {
+    fn store(&self) -> MutexGuard<'_, Store<V>> {
+        // A panic elsewhere leaves a store that is whole: it only holds finished values.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<V> Store<V> {
+    fn look_up(&mut self, key: &Key) -> Option<Arc<V>> {
+        self.clock += 1;
+        let stamp = self.clock;
+        self.kept.get_mut(key).map(|(value, last)| {
             *last = stamp;
-            Arc::clone(columns)
+            Arc::clone(value)
         })
+    }
+
+    fn keep(&mut self, key: Key, value: Arc<V>) {
+        if self.kept.len() >= self.capacity {
+            let oldest = self.kept.iter().min_by_key(|(_, (_, stamp))| *stamp);
+            if let Some(oldest) = oldest.map(|(k, _)| k.clone()) {
+                self.kept.remove(&oldest);
+            }
+        }
+        self.clock += 1;
+        self.kept.insert(key, (value, self.clock));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{CAPACITY, Cache, Key};
+    use super::{Cache, FEWEST, Key};
 
     #[test]
     fn what_was_used_last_stays() {
-        let cache = Cache::default();
-        let make = |v: f64| move || Ok(vec![vec![v]]);
+        let cache = Cache::new(usize::MAX / 64);
+        let make = |v: f64| move || Ok::<_, ()>(v);
         let first = Key::new("a", &[0.0], None);
         cache.get(first.clone(), make(0.0)).unwrap();
-        for i in 1..2 * CAPACITY {
+        for i in 1..2 * FEWEST {
             cache
                 .get(Key::new("b", &[i as f64], None), make(1.0))
                 .unwrap();
-            let again = cache.get(first.clone(), || unreachable!("kept")).unwrap();
-            assert_eq!(again[0][0], 0.0);
+            let again = cache
+                .get(first.clone(), || -> Result<f64, ()> {
+                    unreachable!("kept")
+                })
+                .unwrap();
+            assert_eq!(*again, 0.0);
         }
     }
 }

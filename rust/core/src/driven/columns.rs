@@ -1,8 +1,11 @@
 //! The columns of a model: what each coefficient multiplies, filtered and decimated like the measurement.
 
-use super::cache::{Columns, Key};
-use super::contact::{engagement, friction_state, hold_at_rest};
-use super::kinematics::derivative;
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use super::cache::Key;
+use super::contact::{Slide, slide};
+use super::equations::{Blocks, Rows};
 use super::recording::Recording;
 use crate::Error;
 use crate::effects::{CATALOGUE, Channels, Contact, Effect, Kind, find};
@@ -76,18 +79,6 @@ impl Recording {
         Ok((contact, delay_s))
     }
 
-    /// The friction state of a model at the samples that the comparison keeps, not filtered.
-    ///
-    /// # Errors
-    /// As [`Recording::columns`].
-    pub fn state(&self, terms: &[Term]) -> Result<Vec<f64>, Error> {
-        let (contact, _) = self.contact(terms)?;
-        Ok(friction_state(&contact, &self.seen)
-            .into_iter()
-            .step_by(self.decimate())
-            .collect())
-    }
-
     /// The columns of `wanted`, a choice of indices into `terms`; the other terms only shape contact and delay.
     ///
     /// # Errors
@@ -104,11 +95,44 @@ impl Recording {
             })?;
             let effect = inner_of(term)?;
             self.can_make(effect)?;
-            for column in self.full_rate(effect, &term.inner, &contact)?.iter() {
+            for column in self.at_law_rate(effect, &term.inner, &contact)?.iter() {
                 all.push(self.late(column, delay_s));
             }
         }
         Ok(all)
+    }
+
+    /// The normal equations of a model, one block per stroke.
+    ///
+    /// `given` are coefficients known beforehand, by the place of their column: these columns are not among those of
+    /// the blocks, their part is taken off the measurement.
+    ///
+    /// # Errors
+    /// As [`Recording::columns`]; [`Error::Length`] for a measurement that is not as long as the comparison.
+    pub fn normal_equations(
+        &self,
+        terms: &[Term],
+        given: &[(usize, f64)],
+        effort: &[f64],
+        strokes: &[Rows],
+    ) -> Result<Blocks, Error> {
+        let every: Vec<usize> = (0..terms.len()).collect();
+        let columns = self.columns(terms, &every)?;
+        let shift = self.start_shift(terms)?;
+        crate::error::require_same_length("effort", effort, "comparison", shift.len())?;
+        let mut left = effort.to_vec();
+        for (place, coefficient) in given {
+            for (y, c) in left.iter_mut().zip(&columns[*place]) {
+                *y -= coefficient * c;
+            }
+        }
+        let free = columns
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| given.iter().all(|(known, _)| known != place))
+            .map(|(_, column)| column.as_slice());
+        let all: Vec<&[f64]> = free.chain([shift.as_slice(), &left]).collect();
+        Ok(Blocks::of(&all, strokes))
     }
 
     /// Whether the run holds what the law looks at.
@@ -130,13 +154,13 @@ impl Recording {
         Ok(())
     }
 
-    /// The filtered columns of one effect at full rate, kept for the next model that has the same.
-    fn full_rate(
+    /// The filtered columns of one effect, kept for the next model that has the same.
+    fn at_law_rate(
         &self,
         effect: &Effect,
         inner: &[f64],
         contact: &Contact,
-    ) -> Result<Columns, Error> {
+    ) -> Result<Arc<Vec<Vec<f64>>>, Error> {
         let friction = effect.card.kind == Kind::FrictionLevel;
         let behind = effect.card.behind_gap && contact.gap > 0.0;
         let key = Key::new(
@@ -144,19 +168,17 @@ impl Recording {
             inner,
             (friction || behind).then_some(contact),
         );
-        self.cache.get(key, || {
+        self.columns_kept.get(key, || {
             let mut raw = (effect.along)(&self.channels(), inner);
-            if friction || behind {
-                let state = friction_state(contact, &self.seen);
-                if friction {
-                    for column in &mut raw {
-                        hold_at_rest(column, contact, &self.seen);
-                        multiply(column, &state);
-                    }
-                } else if let Some(engaged) = engagement(contact, &state) {
-                    for column in &mut raw {
-                        multiply(column, &engaged);
-                    }
+            if friction {
+                let slide = self.slide(contact);
+                for column in &mut raw {
+                    slide.hold_at_rest(column);
+                    multiply(column, &slide.state);
+                }
+            } else if behind && let Some(engaged) = &self.slide(contact).engaged {
+                for column in &mut raw {
+                    multiply(column, engaged);
                 }
             }
             raw.iter().map(|column| self.filtered(column)).collect()
@@ -173,27 +195,42 @@ impl Recording {
     /// As [`Recording::columns`].
     pub fn start_shift(&self, terms: &[Term]) -> Result<Vec<f64>, Error> {
         let (contact, delay_s) = self.contact(terms)?;
-        let filtered = self
-            .cache
-            .get(Key::new("start shift", &[], Some(&contact)), || {
-                let rate = derivative(&friction_state(&contact, &self.seen), self.sample_rate_hz);
-                let mut near = vec![0.0; rate.len()];
-                for stroke in self.strokes() {
-                    // The onset is the last sample at rest; the parabola into the first step begins before it.
-                    let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
-                    let from = stroke
-                        .onset
-                        .saturating_sub((lead_s * self.sample_rate_hz).ceil() as usize);
-                    let start = self.seen[stroke.onset];
-                    let gone = |i: &usize| {
-                        (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution()
-                    };
-                    let to = (stroke.onset..rate.len()).find(gone).unwrap_or(rate.len());
-                    near[from..to].copy_from_slice(&rate[from..to]);
-                }
-                Ok(vec![self.filtered(&near)?])
-            })?;
+        let filtered =
+            self.columns_kept
+                .get(Key::new("start shift", &[], Some(&contact)), || {
+                    let slide = self.slide(&contact);
+                    let mut near = vec![0.0; slide.rate.len()];
+                    for stroke in self.strokes() {
+                        let onset = self.law_sample(stroke.onset);
+                        // The onset is the last sample at rest; the parabola into the first step begins before it.
+                        let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
+                        let from =
+                            onset.saturating_sub((lead_s * self.law_rate_hz).ceil() as usize);
+                        let start = self.seen[onset];
+                        let gone = |i: &usize| {
+                            (self.seen[*i] - start).abs() > STEPS_TO_BE_SURE * self.resolution()
+                        };
+                        let to = (onset..near.len()).find(gone).unwrap_or(near.len());
+                        for (near, rate) in near[from..to].iter_mut().zip(&slide.rate[from..to]) {
+                            *near = rate * self.law_rate_hz;
+                        }
+                    }
+                    Ok(vec![self.filtered(&near)?])
+                })?;
         Ok(self.late(&filtered[0], delay_s))
+    }
+
+    /// What a contact does along the record, kept for the other effects that share it.
+    fn slide(&self, contact: &Contact) -> Arc<Slide> {
+        let made = self
+            .slides_kept
+            .get(Key::new("slide", &[], Some(contact)), || {
+                Ok::<_, Infallible>(slide(contact, &self.seen))
+            });
+        match made {
+            Ok(slide) => slide,
+            Err(never) => match never {},
+        }
     }
 
     /// What laws look at, along the record.
@@ -206,26 +243,26 @@ impl Recording {
             travelled: &self.phases.travelled,
             direction: &self.phases.direction,
             load_n: self.load_n.as_deref(),
-            slowest_speed: self.slowest_speed(),
+            slowest_speed: self.slowest_speed,
             turn_rad_per_unit: self.turn_rad_per_unit,
-            step_s: 1.0 / self.sample_rate_hz,
+            step_s: 1.0 / self.law_rate_hz,
         }
     }
 
-    /// The kept samples of a full-rate column, read `delay_s` earlier.
+    /// The kept samples of a column, read `delay_s` earlier.
     ///
     /// Cubic interpolation of a filtered column: its error is below `(2 pi band / rate)^4 / 43` of the amplitude, for a
-    /// band of 6 Hz 5e-4 at 100 Hz and 1e-6 at 500 Hz.
+    /// band of 6 Hz 5e-4 at 100 Hz and 3e-5 at 200 Hz.
     fn late(&self, column: &[f64], delay_s: f64) -> Vec<f64> {
         if delay_s == 0.0 {
-            return column.iter().step_by(self.decimate()).copied().collect();
+            return column.iter().step_by(self.every()).copied().collect();
         }
         let last = column.len() - 1;
         let at = |i: isize| column[i.clamp(0, last.cast_signed()) as usize];
         (0..column.len())
-            .step_by(self.decimate())
+            .step_by(self.every())
             .map(|k| {
-                let place = (k as f64 - delay_s * self.sample_rate_hz).clamp(0.0, last as f64);
+                let place = (k as f64 - delay_s * self.law_rate_hz).clamp(0.0, last as f64);
                 let i = place.floor() as isize;
                 let f = place - i as f64;
                 let (a, b, c, d) = (at(i - 1), at(i), at(i + 1), at(i + 2));

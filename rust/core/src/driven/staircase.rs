@@ -2,12 +2,20 @@
 //!
 //! An encoder says exactly when the position crosses the border between two steps, and nothing in between. Read as
 //! it stands it is late at every start by half a step on average. Here the crossings are joined: by straight lines
-//! while the motion goes on, by a rest in the middle of the step where it pauses, with a parabola (constant
-//! acceleration) into and out of the rest.
+//! while the motion goes on, by a rest in the middle of the step where it pauses, with a power of time into and out of
+//! the rest (see [`super::start`]).
 
-/// From rest in the middle of a step, constant acceleration takes `sqrt(1)` units of time to the first border and
-/// `sqrt(3)` to the second: the first takes `1 / (sqrt(3) - 1)` times what lies between them.
-const START_OVER_NEXT: f64 = 1.366_025_403_784_438_6;
+use super::start::{Passage, Start, gentleness};
+
+/// A pause this many times as long as what follows is a rest from which a motion starts.
+const REST_OVER_NEXT: f64 = 3.0;
+
+/// So many crossings at most tell how a motion starts, so few at least.
+const MOST_PASSAGES: usize = 8;
+const FEWEST_PASSAGES: usize = 4;
+
+/// From rest in the middle of a step the second border is three times as far as the first.
+const SECOND_OVER_FIRST: f64 = 3.0;
 
 /// One crossing of a border between steps.
 #[derive(Clone, Copy)]
@@ -33,6 +41,9 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
             index: i,
         })
         .collect();
+    let power = gentleness(&starts(&crossings, position));
+    // The first border takes this many times what lies between the first two.
+    let start_over_next = 1.0 / (SECOND_OVER_FIRST.powf(1.0 / power) - 1.0);
     let mut joined = position.to_vec();
     for (k, pair) in crossings.windows(2).enumerate() {
         let (a, b) = (pair[0], pair[1]);
@@ -43,8 +54,8 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
         let after = crossings.get(k + 2).filter(|c| c.direction == b.direction);
         let time = b.time - a.time;
         // Without a neighbour in the same direction nothing is known of the speed: half of the time each.
-        let slow_down = before.map_or(0.5 * time, |c| START_OVER_NEXT * (a.time - c.time));
-        let speed_up = after.map_or(0.5 * time, |c| START_OVER_NEXT * (c.time - b.time));
+        let slow_down = before.map_or(0.5 * time, |c| start_over_next * (a.time - c.time));
+        let speed_up = after.map_or(0.5 * time, |c| start_over_next * (c.time - b.time));
         let level = position[a.index];
         let moving = a.direction == b.direction && time <= slow_down + speed_up;
         let shrink = (time / (slow_down + speed_up)).min(1.0);
@@ -54,9 +65,9 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
             *x = if moving {
                 a.border + (b.border - a.border) * (t - a.time) / time
             } else if t < rest_from {
-                level + (a.border - level) * ((rest_from - t) / (rest_from - a.time)).powi(2)
+                level + (a.border - level) * ((rest_from - t) / (rest_from - a.time)).powf(power)
             } else if t > rest_to {
-                level + (b.border - level) * ((t - rest_to) / (b.time - rest_to)).powi(2)
+                level + (b.border - level) * ((t - rest_to) / (b.time - rest_to)).powf(power)
             } else {
                 level
             };
@@ -69,7 +80,8 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
         approach(
             &mut joined,
             first,
-            START_OVER_NEXT * (second.time - first.time),
+            start_over_next * (second.time - first.time),
+            power,
             -1.0,
         );
     }
@@ -79,15 +91,56 @@ pub fn join_steps(position: &[f64]) -> Vec<f64> {
         approach(
             &mut joined,
             last,
-            START_OVER_NEXT * (last.time - second.time),
+            start_over_next * (last.time - second.time),
+            power,
             1.0,
         );
     }
     joined
 }
 
-/// Writes the parabola between a crossing and a rest `duration` away on one side of it.
-fn approach(joined: &mut [f64], crossing: Crossing, duration: f64, side: f64) {
+/// The passages of every start of a motion from rest.
+fn starts(crossings: &[Crossing], position: &[f64]) -> Vec<Start> {
+    (0..crossings.len())
+        .filter(|k| {
+            let here = crossings[*k];
+            let Some(next) = crossings.get(k + 1) else {
+                return false;
+            };
+            k.checked_sub(1).is_none_or(|before| {
+                let before = crossings[before];
+                before.direction != here.direction
+                    || here.time - before.time > REST_OVER_NEXT * (next.time - here.time)
+            })
+        })
+        .map(|k| {
+            let level = position[crossings[k].index - 1];
+            let mut last = f64::INFINITY;
+            let under_way = crossings[k + 1..]
+                .iter()
+                .zip(&crossings[k..])
+                .take(MOST_PASSAGES - 1)
+                .take_while(|(next, here)| {
+                    let pause = next.time - here.time;
+                    let faster = pause <= last;
+                    last = pause;
+                    faster && next.direction == crossings[k].direction
+                })
+                .map(|(next, _)| next);
+            std::iter::once(&crossings[k])
+                .chain(under_way)
+                .map(|c| Passage {
+                    travel: (c.border - level).abs(),
+                    time: c.time,
+                })
+                .collect::<Start>()
+        })
+        .filter(|start| start.len() >= FEWEST_PASSAGES)
+        .collect()
+}
+
+/// Writes the way between a crossing and a rest `duration` away on one side of it.
+fn approach(joined: &mut [f64], crossing: Crossing, duration: f64, power: f64, side: f64) {
     let level = if side < 0.0 {
         joined[crossing.index - 1]
     } else {
@@ -102,7 +155,7 @@ fn approach(joined: &mut [f64], crossing: Crossing, duration: f64, side: f64) {
     let first = from.ceil().max(0.0) as usize;
     let last = (to.floor().max(0.0) as usize + 1).min(joined.len());
     for (i, x) in joined.iter_mut().enumerate().take(last).skip(first) {
-        *x = level + (crossing.border - level) * ((i as f64 - rest) / duration).powi(2);
+        *x = level + (crossing.border - level) * ((i as f64 - rest) / duration).abs().powf(power);
     }
 }
 
@@ -128,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_start_from_rest_is_not_late() {
-        // from the middle of a step, so that the assumption holds exactly: 3 rad/s^2 at 1 kHz
+        // from the middle of a step, constant acceleration: 3 rad/s^2 at 1 kHz
         let x: Vec<f64> = (0..2000)
             .map(|i| (f64::from(i) - 1000.0).max(0.0) * 1e-3)
             .map(|t| 1.5 * t * t)

@@ -60,6 +60,16 @@ impl Phases {
         }
         phases
     }
+
+    /// Every `stride`-th sample.
+    pub fn strided(&self, stride: usize) -> Self {
+        let kept = |v: &[f64]| v.iter().step_by(stride).copied().collect();
+        Self {
+            rest_s: kept(&self.rest_s),
+            travelled: kept(&self.travelled),
+            direction: kept(&self.direction),
+        }
+    }
 }
 
 /// The turning points of `position`: extremes that are followed by a return of more than `hysteresis`.
@@ -114,27 +124,39 @@ fn merge_short(position: &[f64], mut turns: Vec<usize>, minimum_travel: f64) -> 
     turns
 }
 
-/// Finds the strokes of a record.
+/// A point where the motion turns, or where it begins or ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// Its sample.
+    pub sample: usize,
+    /// The position there.
+    pub position: f64,
+}
+
+/// Finds the turning points of a smoothed position: those of strokes of at least `minimum_travel`.
+pub fn turning_points(smooth: &[f64], hysteresis: f64, minimum_travel: f64) -> Vec<Turn> {
+    merge_short(smooth, turns(smooth, hysteresis), minimum_travel)
+        .into_iter()
+        .map(|sample| Turn {
+            sample,
+            position: smooth[sample],
+        })
+        .collect()
+}
+
+/// Finds the strokes between turning points.
 ///
-/// `seen` is the position as the contact follows it, `step` its resolution; onsets are looked
-/// for on it, turning points on `smooth`.
-pub fn strokes(
-    smooth: &[f64],
-    seen: &[f64],
-    step: f64,
-    sample_rate_hz: f64,
-    hysteresis: f64,
-    minimum_travel: f64,
-) -> Vec<Stroke> {
-    let turns = merge_short(smooth, turns(smooth, hysteresis), minimum_travel);
+/// `seen` is the position as the contact follows it, `step` its resolution: onsets are looked for on it.
+pub fn strokes(turns: &[Turn], seen: &[f64], step: f64, sample_rate_hz: f64) -> Vec<Stroke> {
     turns
         .windows(2)
         .map(|pair| {
-            let direction = (smooth[pair[1]] - smooth[pair[0]]).signum();
-            let (onset, uncertain) = onset(&seen[pair[0]..=pair[1]], direction, step);
+            let direction = (pair[1].position - pair[0].position).signum();
+            let (from, to) = (pair[0].sample, pair[1].sample);
+            let (onset, uncertain) = onset(&seen[from..=to], direction, step);
             Stroke {
-                onset: pair[0] + onset,
-                turn: pair[1],
+                onset: from + onset,
+                turn: to,
                 direction,
                 onset_uncertainty_s: uncertain as f64 / sample_rate_hz / 2.0,
             }
@@ -165,7 +187,11 @@ fn onset(seen: &[f64], direction: f64, step: f64) -> (usize, usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::strokes;
+    use super::{Stroke, turning_points};
+
+    fn strokes(x: &[f64]) -> Vec<Stroke> {
+        super::strokes(&turning_points(x, 1.0, 5.0), x, 0.1, 100.0)
+    }
 
     #[test]
     fn dwells_belong_to_the_stroke_before_them() {
@@ -173,7 +199,7 @@ mod tests {
         x.extend((0..=100).map(|i| f64::from(i) * 0.1));
         x.extend(vec![10.0; 50]);
         x.extend((0..=100).map(|i| 10.0 - f64::from(i) * 0.1));
-        let found = strokes(&x, &x, 0.1, 100.0, 1.0, 5.0);
+        let found = strokes(&x);
         assert_eq!(found.len(), 2);
         assert_eq!(found[0].direction, 1.0);
         assert_eq!(found[1].direction, -1.0);
@@ -187,6 +213,6 @@ mod tests {
         let back = (0..15).map(|i| 9.9 - f64::from(i) * 0.1);
         let on = (0..100).map(|i| 8.5 + f64::from(i) * 0.1);
         let x: Vec<f64> = up.chain(back).chain(on).collect();
-        assert_eq!(strokes(&x, &x, 0.1, 100.0, 1.0, 5.0).len(), 1);
+        assert_eq!(strokes(&x).len(), 1);
     }
 }

@@ -21,6 +21,7 @@ mod end_stop;
 mod freeplay;
 mod hardening;
 mod inertia;
+mod lead;
 mod load;
 mod offset;
 mod once_per_rev;
@@ -64,6 +65,7 @@ pub static CATALOGUE: &[Effect] = &[
     Effect::of::<tight_spot::TightSpot>(),
     Effect::of::<load::Load>(),
     Effect::of::<delay::Delay>(),
+    Effect::of::<lead::Lead>(),
     Effect::of::<warmup::Warmup>(),
     Effect::of::<drift::Drift>(),
     Effect::of::<dwell::Dwell>(),

@@ -8,7 +8,7 @@ use super::matrix::{MAX_POLES, Vector};
 use super::samples::{Sample, Scale};
 use super::simd::{Affine, InstructionSet, Order};
 use super::system::System;
-use crate::error::{Error, require_moderate, require_same_length};
+use crate::error::{Error, LARGEST, require_moderate, require_same_length};
 
 /// A running filter. The output does not depend on how the stream is cut into chunks, bit for bit: the memory is the
 /// state at the last multiple of sixteen samples and the samples since.
@@ -262,6 +262,8 @@ impl Filter {
         if x.is_empty() {
             return true;
         }
+        // Less its origin, a sample that is far too large looks like none.
+        let moderate = x.iter().all(|v| v.abs() <= LARGEST);
         let memory = &mut self.memory;
         let (from, to) = (memory.count, memory.count + x.len());
         for (place, v) in memory.waiting[from..to].iter_mut().zip(x) {
@@ -288,7 +290,7 @@ impl Filter {
             memory.waiting = [0.0; BLOCK];
             memory.count = 0;
         }
-        good
+        good && moderate
     }
 
     fn wait_in_place(&mut self, origin: f64, lift: f64, x: &mut [f64]) {
