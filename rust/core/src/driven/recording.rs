@@ -149,7 +149,7 @@ impl Recording {
             let quick_hz = TREMBLE_OVER_BAND * band.upper_hz;
             let (quick, quick_hz) = if quick_hz < 0.45 * sample_rate_hz {
                 (
-                    run(&mut zero_phase(quick_hz, sample_rate_hz)?, position)?,
+                    run(&zero_phase(quick_hz, sample_rate_hz)?, position)?,
                     quick_hz,
                 )
             } else {
@@ -273,7 +273,7 @@ impl Recording {
             return Ok(kept(channel, self.decimate));
         }
         let at_law_rate: Vec<f64> = match &self.folding {
-            Some(folding) => kept(&run(&mut folding.clone(), channel)?, self.stride),
+            Some(folding) => kept(&run(folding, channel)?, self.stride),
             None => channel.to_vec(),
         };
         Ok(kept(&self.filtered(&at_law_rate)?, self.every()))
