@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -226,3 +229,19 @@ def test_a_record_is_filtered_by_one_design_only() -> None:
     made = signal.LowPass(poles=2, cutoff_hz=6, sample_rate_hz=1000)
     with pytest.raises(ParameterError, match="cutoff_hz"):
         signal.zero_phase(np.ones(9), design=made, cutoff_hz=6)
+    with pytest.raises(ParameterError, match="design"):
+        signal.zero_phase(np.ones(9), design="low")
+    with pytest.raises(ParameterError, match="passes"):
+        signal.zero_phase(
+            np.ones(9), design=signal.LowPass(poles=2, cutoff_hz=6, sample_rate_hz=1000, zero_phase=False)
+        )
+
+
+def test_designs_travel_by_pickle_and_compare_by_value() -> None:
+    made = signal.BandPass(poles=4, low_hz=5, high_hz=20, sample_rate_hz=1000)
+    signal.zero_phase(np.ones(50), design=made)
+    twin = pickle.loads(pickle.dumps(made))
+    assert twin == made and hash(twin) == hash(made) and copy.deepcopy(made) == made
+    np.testing.assert_array_equal(
+        signal.zero_phase(np.arange(50.0), design=twin), signal.zero_phase(np.arange(50.0), design=made)
+    )

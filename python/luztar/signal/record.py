@@ -149,7 +149,7 @@ def zero_phase(
     if design is None:
         ready = _ready(poles, cutoff_hz, sample_rate_hz, cutoff_at, edges, False)  # type: ignore[arg-type]
     else:
-        _no_more_than_the_design(sample_rate_hz, cutoff_hz)
+        _nothing_but_the_design(design, sample_rate_hz, cutoff_hz)
         ready = design._both_ways(edges)
     y = _run(ready, x, axis, out, missing, scale, threads)
     if return_trusted:
@@ -198,12 +198,14 @@ def derivative(
     if design is None:
         ready = _ready(poles, cutoff_hz, sample_rate_hz, cutoff_at, edges, True)  # type: ignore[arg-type]
     else:
-        _no_more_than_the_design(sample_rate_hz, cutoff_hz)
+        _nothing_but_the_design(design, sample_rate_hz, cutoff_hz)
         ready = design._both_ways(edges, derivative=True)
     return _run(ready, x, axis, out, missing, None, threads)
 
 
-def _no_more_than_the_design(sample_rate_hz: float | None, cutoff_hz: float | None) -> None:
+def _nothing_but_the_design(design: Any, sample_rate_hz: float | None, cutoff_hz: float | None) -> None:
+    if not isinstance(design, Design):
+        raise ParameterError(f"design is {design!r}", "design", "Give a LowPass, HighPass, BandPass or BandStop.")
     if sample_rate_hz is not None or cutoff_hz is not None:
         raise ParameterError("design comes with a cut-off of its own", "cutoff_hz", "Give one or the other.")
 

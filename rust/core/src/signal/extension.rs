@@ -144,11 +144,7 @@ impl Around {
     pub fn settled_ends(&self, first: &System, head: &[f64], tail: &[f64]) -> Starts {
         let pad = head.len() - 1;
         let (level, last) = (head[0], tail[pad]);
-        let reflected = |shift| Affine {
-            scale: -1.0,
-            shift,
-            lift: 0.0,
-        };
+        let reflected = |shift| Affine::new(-1.0, shift, 0.0);
         let far = level - head[pad];
         let mut left = Run::new(first, first.space.b);
         left.state = first.steady.at(far, -far / pad as f64);
@@ -174,10 +170,7 @@ impl Around {
         let period = 2 * (n - 1);
         // Of the first half of the period, which is the record itself, what lies within the pad.
         let from = period.saturating_sub(pad).min(n - 1);
-        let turned = Affine {
-            scale: -1.0,
-            ..Affine::NONE
-        };
+        let turned = Affine::new(-1.0, 0.0, 0.0);
         let mut left = Run::new(first, first.space.b);
         left.ascending(&first.block, Affine::NONE, &x[from..]);
         left.descending(&self.left, turned, &x[1..n - 1]);
@@ -218,7 +211,7 @@ impl<'a> Run<'a> {
         let (blocks, rest) = x.split_at(x.len() / 16 * 16);
         self.blocks(block, Order::Ascending, affine, blocks);
         for v in rest {
-            self.step(affine.scale * v + affine.shift);
+            self.step(affine.way_in(*v));
         }
     }
 
@@ -226,7 +219,7 @@ impl<'a> Run<'a> {
         let (rest, blocks) = x.split_at(x.len() % 16);
         self.blocks(block, Order::Descending, affine, blocks);
         for v in rest.iter().rev() {
-            self.step(affine.scale * v + affine.shift);
+            self.step(affine.way_in(*v));
         }
     }
 

@@ -122,11 +122,7 @@ impl Filter {
         let head = self.head_length(x.len());
         let body = head + (x.len() - head) / BLOCK * BLOCK;
         let mut good = self.wait(origin, lift, &x[..head], &mut out[..head]);
-        let affine = Affine {
-            shift: -origin,
-            lift,
-            ..Affine::NONE
-        };
+        let affine = Affine::new(1.0, -origin, lift);
         let system = &self.system;
         let state = &mut self.memory.state;
         good &= system.kernel.filter(
@@ -157,11 +153,7 @@ impl Filter {
         let head = self.head_length(x.len());
         let body = head + (x.len() - head) / BLOCK * BLOCK;
         self.wait_in_place(origin, lift, &mut x[..head]);
-        let affine = Affine {
-            shift: -origin,
-            lift,
-            ..Affine::NONE
-        };
+        let affine = Affine::new(1.0, -origin, lift);
         let system = &self.system;
         let state = &mut self.memory.state;
         system.kernel.filter_in_place(
@@ -271,10 +263,7 @@ impl Filter {
         }
         let mut staged = memory.waiting;
         let mut after = memory.state;
-        let affine = Affine {
-            lift,
-            ..Affine::NONE
-        };
+        let affine = Affine::lifted(lift);
         let system = &self.system;
         let good = system.kernel.filter_in_place(
             &system.block,

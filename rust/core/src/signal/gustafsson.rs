@@ -66,13 +66,5 @@ pub fn filter(filter: &ZeroPhase, x: &mut [f64]) {
         std::array::from_fn(|i| if i < states { solution[from + i] } else { 0.0 })
     };
     first.forward_in_place(&state(0), Affine::NONE, x);
-    second.backward_in_place(
-        &filter.turned,
-        &state(states),
-        Affine {
-            lift: level,
-            ..Affine::NONE
-        },
-        x,
-    );
+    second.backward_in_place(&filter.turned, &state(states), Affine::lifted(level), x);
 }

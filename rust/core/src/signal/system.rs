@@ -109,8 +109,7 @@ impl System {
         );
         put(&staged[..x.len()]);
         for x in x {
-            self.space
-                .advance(&mut after, affine.scale * x + affine.shift);
+            self.space.advance(&mut after, affine.way_in(*x));
         }
         (after, good)
     }

@@ -3,6 +3,8 @@
 //! Two passes over the result's own memory; the extensions beyond the ends are read from the record itself and act only
 //! through the state a pass starts with (see `extension`).
 
+use std::sync::OnceLock;
+
 use super::anti_alias::AntiAlias;
 use super::butterworth::{Butterworth, Passes, require_tolerance};
 use super::cascade::Cascade;
@@ -16,6 +18,9 @@ use super::simd::{Affine, InstructionSet};
 use super::system::System;
 use super::tail::Tail;
 use crate::error::{Error, require_moderate, require_same_length};
+
+/// What is left of a filter's past when nothing is: below the rounding of a sum of its response.
+const NOTHING: f64 = 1e-18;
 
 /// What happens at the ends of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +60,10 @@ pub struct ZeroPhase {
     pub(super) pad: usize,
     /// The sections of both passes, for channels side by side.
     pub(super) sections: [Sections; 2],
-    tail: Tail,
+    /// Samples after which nothing is left of the past.
+    memory: usize,
+    /// Summed when it is first asked for.
+    tail: OnceLock<Tail>,
 }
 
 impl ZeroPhase {
@@ -138,7 +146,8 @@ impl ZeroPhase {
         let around = Around::new(&first_system.space, &first_system.block);
         Ok(Self {
             turned: second_system.block.reversed(),
-            tail: Tail::new(&second_system.space, &around, first.settle_samples(1e-18)),
+            tail: OnceLock::new(),
+            memory: first.settle_samples(NOTHING),
             sections: [sections_of(first), sections_of(second)],
             first: first_system,
             second: second_system,
@@ -160,11 +169,16 @@ impl ZeroPhase {
         self.edges
     }
 
+    fn tail(&self) -> &Tail {
+        self.tail
+            .get_or_init(|| Tail::new(&self.second.space, &self.around, self.memory))
+    }
+
     /// How much of what lies more than `distance` samples away acts on a sample: the sum of the magnitudes of the
     /// zero-phase impulse response beyond that distance.
     #[must_use]
     pub fn weight_beyond(&self, distance: usize) -> f64 {
-        self.tail.beyond(distance)
+        self.tail().beyond(distance)
     }
 
     /// The samples of a record of `length` that what lies beyond its ends moves by at most `tolerance` times the
@@ -174,7 +188,7 @@ impl ZeroPhase {
     /// [`Error::OutOfRange`] unless `tolerance` is in (0, 1).
     pub fn trusted(&self, length: usize, tolerance: f64) -> Result<std::ops::Range<usize>, Error> {
         require_tolerance(tolerance)?;
-        let edge = self.tail.distance(tolerance);
+        let edge = self.tail().distance(tolerance);
         Ok(if 2 * edge < length {
             edge..length - edge
         } else {
@@ -315,10 +329,7 @@ impl ZeroPhase {
     fn backward(&self, starts: &Starts, after: &Vector, level: f64, out: &mut [f64]) {
         let start = starts.second(&self.first, &self.second, &self.around, after);
         let lift = level * self.second.level_gain;
-        let affine = Affine {
-            lift,
-            ..Affine::NONE
-        };
+        let affine = Affine::lifted(lift);
         self.second
             .backward_in_place(&self.turned, &start, affine, out);
     }
@@ -380,10 +391,7 @@ fn sections_of(cascade: &Cascade) -> Sections {
 
 /// Takes the level out on the way in.
 fn subtract(level: f64) -> Affine {
-    Affine {
-        shift: -level,
-        ..Affine::NONE
-    }
+    Affine::new(1.0, -level, 0.0)
 }
 
 fn require_both_ways(design: &Butterworth) -> Result<(), Error> {

@@ -40,20 +40,25 @@ unsafe fn filter<V: Lanes, const N: usize, const S: usize, const P: usize, const
                 } else {
                     work.blocks - done - blocks
                 };
-            bad = take_in::<V>(
-                &mut tile,
-                work.input.add(at),
-                blocks * BLOCK,
-                &work.affine,
-                bad,
-            );
+            let samples_at = if work.affine.as_they_are {
+                work.input.add(at)
+            } else {
+                bad = take_in::<V>(
+                    &mut tile,
+                    work.input.add(at),
+                    blocks * BLOCK,
+                    &work.affine,
+                    bad,
+                );
+                tile.0.as_ptr()
+            };
             fetch_ahead::<V, UP>(work.input.wrapping_add(at));
             if !std::ptr::eq(work.input, work.output) {
                 fetch_ahead::<V, UP>(work.output.wrapping_add(at));
             }
             for i in 0..blocks {
                 let place = BLOCK * if UP { i } else { blocks - 1 - i };
-                let samples = tile.0.as_ptr().add(place);
+                let samples = samples_at.add(place);
                 let output = work.output.add(at + place);
                 // The half that comes first in time.
                 let (early, late) = if UP { (0, HALF) } else { (HALF, 0) };

@@ -88,21 +88,41 @@ pub(super) enum Order {
 /// What happens to a sample on its way in and out: `scale x + shift` is filtered, `lift` is added to the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Affine {
-    /// Times the sample.
-    pub scale: f64,
-    /// Plus this.
-    pub shift: f64,
-    /// Added to what comes out.
-    pub lift: f64,
+    scale: f64,
+    shift: f64,
+    lift: f64,
+    /// Samples known to be moderate that go in as they are: they are read where they lie.
+    as_they_are: bool,
 }
 
 impl Affine {
-    /// Nothing happens to it.
-    pub const NONE: Self = Self {
-        scale: 1.0,
-        shift: 0.0,
-        lift: 0.0,
-    };
+    /// Samples known to be moderate, nothing happens to them.
+    pub const NONE: Self = Self::lifted(0.0);
+
+    /// Samples known to be moderate; `lift` is added to what comes out.
+    pub const fn lifted(lift: f64) -> Self {
+        Self {
+            scale: 1.0,
+            shift: 0.0,
+            lift,
+            as_they_are: true,
+        }
+    }
+
+    /// `scale x + shift` goes in, `lift` is added to what comes out; samples are looked at.
+    pub const fn new(scale: f64, shift: f64, lift: f64) -> Self {
+        Self {
+            scale,
+            shift,
+            lift,
+            as_they_are: false,
+        }
+    }
+
+    /// What goes in for a sample.
+    pub fn way_in(&self, x: f64) -> f64 {
+        self.scale * x + self.shift
+    }
 }
 
 /// Where a kernel reads and writes.
@@ -140,7 +160,8 @@ impl Kernel {
         self.set
     }
 
-    /// Filters the whole blocks of `x` into `out`; false if a sample was not of moderate magnitude.
+    /// Filters the whole blocks of `x` into `out`; false if a sample was not of moderate magnitude
+    /// (unless they are taken as they are).
     ///
     /// # Panics
     /// Lengths that differ or are no multiple of a block: the callers cut them.
