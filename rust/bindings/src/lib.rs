@@ -1,6 +1,8 @@
 //! The Python module `luztar._core`: the export list. Each binding slices, detaches, calls and maps the error.
-#![allow(missing_docs, clippy::needless_pass_by_value)]
+// Docstrings are Python's: they say array_like without backticks.
+#![allow(missing_docs, clippy::needless_pass_by_value, clippy::doc_markdown)]
 
+mod door;
 mod driven;
 mod effects;
 mod error;
@@ -20,11 +22,16 @@ mod _core {
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]
-    use crate::regression::{LineSums, fit_line};
+    use crate::regression::{
+        LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, RollingPolynomial, fit_line,
+        fit_linear, fit_polynomial, huber, theil_sen,
+    };
     #[pymodule_export]
     use crate::signal::{Butterworth, ZeroPhase, even, extremes, instruction_sets};
     #[pymodule_export]
-    use crate::stats::Moments;
+    use crate::stats::{
+        Counts, Moments, QuantileSketch, Rolling, moments_by_label, moments_by_window, rolling,
+    };
     #[pymodule_export]
     use crate::stream::{Bank, Filter, FixedLag};
 

@@ -59,7 +59,7 @@ pub enum Grid {
     Time,
     /// Geometric, around the rests between the strokes.
     Rest,
-    /// Even, between the bounds, the bounds being seconds of delay.
+    /// Geometric, from a sample of the record to the upper bound, in seconds.
     Delay,
     /// The whole numbers between the bounds.
     Count,

@@ -15,7 +15,7 @@ impl Law for Lead {
         look: "Every reversal of the torque comes before that of the angle, by the same time.",
         cause: "A filter or tracking loop in the angle channel only, channels sampled one after the other, a command recorded in place of the torque.",
         check: "Record both channels on one clock with the same filter; ask for the logger's filter settings.",
-        typical: "1 to 10 ms",
+        typical: "1 to 50 ms",
         source: "a dead time of the other channel; on the EMPS axis the recorded command leads by one sample of 1 ms (Janot, Gautier, Brunot 2019)",
         parameters: &[Parameter {
             key: "time_s",
@@ -23,7 +23,7 @@ impl Law for Lead {
             meaning: "how early the torque is",
             role: Role::Inner(Grid::Delay),
             low: 0.0,
-            high: 0.02,
+            high: 0.1,
         }],
         becomes: Some("coulomb"),
         per_turn: false,
