@@ -24,6 +24,9 @@ from .terms import inner_grid
 SET_ERRORS = 2.0
 # A gain that no engineer would act on is none: 1 % of the held-out error (rms).
 PRACTICAL_GAIN = 0.01
+# A law is an idealisation: of the sum of squares that it takes off it may leave this share in a shape of its own. A
+# gap of 2 degrees leaves half of it.
+LAW_ACCURACY = 0.01
 # Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
 REFINED_WITHIN = 1.6
 BENT_WITHIN = 6.0
@@ -159,6 +162,19 @@ def gain(base: Search, better: Search) -> tuple[float, float]:
     total, error = paired_error(base.losses, better.losses)
     left = better.held_out_loss / max(base.held_out_loss, np.finfo(float).tiny)
     return 1.0 - float(np.sqrt(max(left, 0.0))), total / max(error, np.finfo(float).tiny)
+
+
+def beyond_the_law(base: Search, better: Search, explained: float) -> bool:
+    """Whether a candidate takes off more than the laws that are in the model already may have left of their own part.
+
+    Parameters
+    ----------
+    base, better : Search
+        Without and with the candidate.
+    explained : float
+        The held-out sum of squares that the effects added before have taken off.
+    """
+    return base.held_out_loss - better.held_out_loss >= LAW_ACCURACY * explained
 
 
 def equivalent(found: Sequence[Candidate]) -> list[Candidate]:

@@ -7,18 +7,19 @@ place; so the order of finding does not decide.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from ..model import Model, card
-from .candidates import PRACTICAL_GAIN, SET_ERRORS, gain, paired_error
+from .candidates import PRACTICAL_GAIN, SET_ERRORS, beyond_the_law, gain, paired_error
 from .diagnose import Diagnosis, diagnose
 from .experiment import experiment_for
 from .fit import Fit, fit_prepared
 from .floor import NoiseFloor
 from .prepare import Prepared
 from .step import Step
-from .verdict import ABOVE_FLOOR, admissible
+from .verdict import ABOVE_FLOOR, admissible, shown_rms
 
 MAX_EFFECTS = 4
 # So many of the best candidates are given a partner where none stands out alone.
@@ -40,15 +41,25 @@ class Loop:
         # Later models start from what the first ones have found.
         return fit_prepared(model, self.prepared, self.unseen, self.floor, located=model is not self.base)
 
+    @functools.cached_property
+    def first(self) -> Fit:
+        """The model as given, fitted."""
+        return self.fit(self.base)
+
+    def explained(self, fitted: Fit) -> float:
+        """Return the held-out sum of squares that the effects added so far have taken off."""
+        return max(0.0, self.first.search.held_out_loss - fitted.search.held_out_loss)
+
     def look(self, fitted: Fit, what: str) -> Diagnosis:
         """Look at a fitted model, telling ``what`` for."""
         progress = self.progress
-        return diagnose(fitted, progress=None if progress is None else lambda done, of: progress(what, done, of))
+        shown = None if progress is None else lambda done, of: progress(what, done, of)
+        return diagnose(fitted, explained=self.explained(fitted), progress=shown)
 
 
 def climb(loop: Loop, max_effects: int) -> tuple[list[Step], list[Diagnosis]]:
     """Add effects until nothing is missing, drop what later ones made needless, and order the ladder."""
-    fitted = loop.fit(loop.base)
+    fitted = loop.first
     looks = [loop.look(fitted, "look 1")]
     added: list[str] = []
     offered: dict[str, tuple[str, ...]] = {}
@@ -127,7 +138,9 @@ def _without_needless(loop: Loop, fitted: Fit, added: list[str]) -> tuple[Fit, l
         trials = [(name, loop.fit(fitted.model - name)) for name in added if not _needed(fitted.model, name)]
         for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
             share, errors = gain(without.search, fitted.search)
-            if share < PRACTICAL_GAIN or errors < SET_ERRORS:
+            worth = beyond_the_law(without.search, fitted.search, loop.explained(without))
+            worth = worth and shown_rms(fitted, fitted.search) < shown_rms(without, without.search)
+            if share < PRACTICAL_GAIN or errors < SET_ERRORS or not worth:
                 fitted, added = without, [a for a in added if a != name]
                 break
         else:
@@ -190,7 +203,7 @@ def _ladder(
 ) -> list[Step]:
     """Return the steps: at each the effect that takes most off the unseen error, whatever the order of finding."""
     start = dict(fitted.model.start)
-    steps = [Step(None, (), False, loop.fit(loop.base), None)]
+    steps = [Step(None, (), False, loop.first, None)]
     left = list(added)
     while left:
         model = steps[-1].fit.model

@@ -165,13 +165,16 @@ class Diagnosis:
         return candidates(self)
 
 
-def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None) -> Diagnosis:
+def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, int], None] | None = None) -> Diagnosis:
     """Look once at a fitted model: test whether something is missing and try every effect of the catalogue.
 
     Parameters
     ----------
     fitted : Fit
         From ``luztar.fit``. Held-out runs given there are only predicted: they decide nothing here.
+    explained : float
+        The held-out sum of squares that effects added before have taken off: what their laws may have left of it is no
+        evidence for another one.
     progress : callable, optional
         Called with (done, total).
     """
@@ -184,7 +187,7 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
     # out as a simpler one: it cannot be named, and what it finds there is not held against the model.
     telling = [f for f in features if not (f.inside_zones and f.name in simpler)]
     tested = detection(fitted, telling, gains)
-    judged = judge(fitted, found, tested, simpler)
+    judged = judge(fitted, found, tested, simpler, explained)
     return Diagnosis(
         fit=fitted,
         judgement=judged,

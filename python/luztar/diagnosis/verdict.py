@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, equivalent, gain
+from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, beyond_the_law, equivalent, gain
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
 from .fit import Fit, predict, predict_folds
@@ -110,8 +110,22 @@ def admissible(fitted: Fit, c: Candidate) -> bool:
     return all(p.low <= values[p.key] <= p.high for p in c.card.parameters if p.role == "linear")
 
 
-def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler: dict[str, str]) -> Judgement:
-    """Decide what a look at the candidates allows to say; ``simpler`` are the :func:`folded` ones."""
+def judge(
+    fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler: dict[str, str], explained: float = 0.0
+) -> Judgement:
+    """Decide what a look at the candidates allows to say.
+
+    Parameters
+    ----------
+    fitted : Fit
+    found : sequence of Candidate
+        The best first.
+    detection : Detection
+    simpler : dict of str to str
+        The :func:`folded` ones.
+    explained : float
+        The held-out sum of squares that effects added before have taken off.
+    """
     rivals = [c for c in found if c.name not in simpler and admissible(fitted, c)]
     strokes = detection.strokes
     if strokes < FEWEST_STROKES:
@@ -127,6 +141,7 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler
     if few and best is not None:
         worth = worth and worth_with_few(fitted, best, rivals)
     # What is shown is the error of the model without any shift of the starts: a step that raises it is no step.
+    worth = worth and best is not None and beyond_the_law(baseline(fitted), best.search, explained)
     worth = worth and best is not None and shown_rms(fitted, best.search) < shown_rms(fitted, baseline(fitted))
     if not detected:
         return Judgement("nothing_missing", (), names, simpler, f"no test rejects at {100 * ALPHA:g} %")
