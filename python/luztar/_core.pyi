@@ -313,6 +313,7 @@ class _Card(TypedDict):
     becomes: str | None
     channel: str | None
     needs: str | None
+    structures: list[str]
     parameters: list[_Parameter]
 
 def effect_cards() -> list[_Card]: ...

@@ -61,6 +61,8 @@ def possible(fitted: Fit) -> list[Card]:
     model = fitted.model
     found = []
     for c in cards(model.structure_name):
+        if not c.is_searched_on(model.structure_name):
+            continue
         if c.name in model.effects or (c.needs and c.needs not in model.effects):
             continue
         if c.channel and any(not r.has_load for r in fitted.runs):

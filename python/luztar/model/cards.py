@@ -75,6 +75,7 @@ class Card:
     becomes: str | None
     channel: str | None
     needs: str | None
+    structures: tuple[str, ...]
     parameters: tuple[Parameter, ...]
 
     @property
@@ -86,6 +87,10 @@ class Card:
     def linear(self) -> tuple[Parameter, ...]:
         """The parameters that multiply columns, in the order of the columns."""
         return tuple(p for p in self.parameters if p.role != "inner")
+
+    def is_searched_on(self, structure: str) -> bool:
+        """Whether a search on a structure tries the effect; a model may hold it anywhere."""
+        return not self.structures or structure in self.structures
 
     @property
     def is_decoy(self) -> bool:
@@ -141,7 +146,7 @@ def _all(structure: str) -> dict[str, Card]:
                 replace(p, key=axis_key(p.key), meaning=axis_words.meaning(p.meaning)) for p in parameters
             )
             raw |= {"typical": "", **axis_words.WORDS.get(raw["name"], {})}
-        fields: dict[str, Any] = {**raw, "parameters": parameters}
+        fields: dict[str, Any] = {**raw, "structures": tuple(raw["structures"]), "parameters": parameters}
         found[raw["name"]] = Card(**fields)
     return found
 

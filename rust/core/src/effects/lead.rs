@@ -29,6 +29,8 @@ impl Law for Lead {
         per_turn: false,
         channel: None,
         needs: None,
+        // A rig measures its torque: there a lead would only be one more curve that a start can look like.
+        structures: &["axis"],
     };
     const COLUMNS: usize = 0;
     const SHAPES_OTHERS: bool = true;
