@@ -36,7 +36,7 @@ def vector(name: str, values: Any, *, minimum: int = 1, finite: bool = True) -> 
         raise ParameterError(f"{name} holds {array.size} values", name, f"Give at least {minimum}.")
     array = np.require(array, np.float64, ["C", "A"])
     if finite:
-        _refuse_not_finite(name, array)
+        refuse_not_finite(name, array)
     return array
 
 
@@ -73,7 +73,7 @@ def rows(name: str, values: Any, columns: int | None = None) -> np.ndarray:
     return np.require(array, np.float64, ["C", "A"])
 
 
-def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int, ...]]:
+def rows_along(name: str, values: Any, axis: int, *, finite: bool = True) -> tuple[np.ndarray, tuple[int, ...]]:
     """Return ``values`` as contiguous float64 rows, one per record along ``axis``, and the shape with ``axis`` last.
 
     Raises
@@ -85,7 +85,8 @@ def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int
     if array.ndim == 0 or array.size == 0:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give at least one sample.")
     axis = whole_number("axis", axis, -array.ndim, array.ndim - 1)
-    _refuse_not_finite(name, array)
+    if finite:
+        refuse_not_finite(name, array)
     array = np.moveaxis(array, axis, -1)
     rows = np.require(array, np.float64, ["C", "A"]).reshape(-1, array.shape[-1])
     return rows, array.shape
@@ -146,7 +147,22 @@ def _real(name: str, values: Any) -> np.ndarray:
     return array
 
 
-def _refuse_not_finite(name: str, array: np.ndarray) -> None:
+def is_plain(values: Any) -> bool:
+    """Return whether ``values`` is a contiguous, aligned vector of doubles that can be used as it lies."""
+    if type(values) is not np.ndarray or values.dtype != np.float64 or values.ndim != 1:
+        return False
+    flags = values.flags
+    return flags.c_contiguous and flags.aligned and values.dtype.isnative
+
+
+def refuse_not_finite(name: str, array: np.ndarray) -> None:
+    """Refuse NaN and infinities.
+
+    Raises
+    ------
+    ParameterError
+        Names the first ten positions.
+    """
     good = np.isfinite(array)
     if good.all():
         return

@@ -9,6 +9,7 @@ mod error;
 mod regression;
 mod signal;
 mod stats;
+mod stream;
 
 use pyo3::prelude::*;
 
@@ -26,11 +27,13 @@ mod _core {
         fit_linear, fit_polynomial, huber, theil_sen,
     };
     #[pymodule_export]
-    use crate::signal::{Filter, LowPass, zero_phase};
+    use crate::signal::{Butterworth, ZeroPhase, even, extremes, instruction_sets};
     #[pymodule_export]
     use crate::stats::{
         Counts, Moments, QuantileSketch, Rolling, moments_by_label, moments_by_window, rolling,
     };
+    #[pymodule_export]
+    use crate::stream::{Bank, Filter, FixedLag};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
