@@ -71,9 +71,9 @@ def climb(loop: Loop, max_effects: int) -> tuple[list[Step], list[Diagnosis]]:
             seen.add(frozenset(added))
             looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
             continue
-        # A mechanism that calls for a fifth effect is one that the catalogue does not describe: its curves are being
-        # pieced together from those of others. A smaller limit is the user's, and what was added until then stands.
-        exhausted = bool(looks[-1].named) and len(added) >= MAX_EFFECTS
+        # A mechanism for which four effects are not enough is one that the catalogue does not describe: its curves are
+        # being pieced together from those of others. A smaller limit is the user's: what was added until then stands.
+        exhausted = len(added) >= MAX_EFFECTS and looks[-1].verdict != "nothing_missing"
         unexplained = looks[-1].verdict == "unexplained" or exhausted
         if unexplained or looks[-1].named or len(added) < 2:
             break

@@ -13,13 +13,13 @@ from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
-from .fit import Fit, predict, predict_folds
+from .fit import Fit, predict
 from .given import given_fit
 from .intervals import Estimate
 from .misfit import rms, usable
 from .prepare import Prepared
 from .score import Detection
-from .verdict import Judgement, folded, judge
+from .verdict import Judgement, folded, judge, shown_rms
 from .where import Map, Regime, regimes, residual_map
 
 
@@ -193,21 +193,20 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
         found=tuple(found),
-        unseen_rms=_rms(fitted.runs, predict_folds(fitted.problem, baseline(fitted))),
+        unseen_rms=shown_rms(fitted, baseline(fitted)),
     )
 
 
 def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> Tried:
     state = c.search.best
     assert state is not None
-    problem, runs = fitted.problem, fitted.runs
+    runs = fitted.runs
     modelled = [predict(r, m, state.coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
-    unseen = predict_folds(problem, c.search)
     share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,
         rms=_rms(runs, modelled),
-        held_out_rms=_rms(runs, unseen),
+        held_out_rms=shown_rms(fitted, c.search),
         gain=share,
         gain_errors=errors,
         p_value=tested.candidates.get(c.name),

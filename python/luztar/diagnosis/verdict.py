@@ -10,10 +10,11 @@ import numpy as np
 from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, equivalent, gain
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
-from .fit import Fit, predict
+from .fit import Fit, predict, predict_folds
 from .grids import points, word
-from .misfit import rms
+from .misfit import rms, usable
 from .score import Detection
+from .search import Search
 from .values import effect_values
 
 # One level over all tests of a look.
@@ -125,6 +126,8 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler
     worth = best is not None and share >= (GAIN_WITH_FEW if few else PRACTICAL_GAIN) and errors >= SET_ERRORS
     if few and best is not None:
         worth = worth and worth_with_few(fitted, best, rivals)
+    # What is shown is the error of the model without any shift of the starts: a step that raises it is no step.
+    worth = worth and best is not None and shown_rms(fitted, best.search) < shown_rms(fitted, baseline(fitted))
     if not detected:
         return Judgement("nothing_missing", (), names, simpler, f"no test rejects at {100 * ALPHA:g} %")
     if worth and best is not None:
@@ -150,6 +153,12 @@ def judge(fitted: Fit, found: Sequence[Candidate], detection: Detection, simpler
     return Judgement(
         "below_practical_size", (), names, simpler, f"no effect takes {100 * PRACTICAL_GAIN:g} % off the unseen error"
     )
+
+
+def shown_rms(fitted: Fit, search: Search) -> float:
+    """Return the unseen error of a search's states as it is shown."""
+    unseen = predict_folds(fitted.problem, search)
+    return rms(usable(fitted.runs, [r.effort - p for r, p in zip(fitted.runs, unseen, strict=True)]))
 
 
 def worth_with_few(fitted: Fit, best: Candidate, rivals: Sequence[Candidate]) -> bool:
