@@ -38,7 +38,11 @@ class Timings:
 
 
 def measure(
-    calls: Mapping[str, Callable[[], object]], rounds: int = 15, least_round_s: float = 2e-3, warm_up: int = 1
+    calls: Mapping[str, Callable[[], object]],
+    rounds: int = 15,
+    least_round_s: float = 2e-3,
+    warm_up: int = 1,
+    before: Mapping[str, Callable[[], object]] | None = None,
 ) -> Timings:
     """Time named calls interleaved.
 
@@ -52,12 +56,18 @@ def measure(
         A call that is shorter is repeated within a round until the round takes this long.
     warm_up : int
         Calls of each before the first round.
+    before : mapping of str to callable, optional
+        Makes anew what the call of the same name works on, outside its time: for what keeps results of an earlier
+        call. Such a call is timed once in every round.
     """
+    before = before or {}
     repeats = {}
     for name, call in calls.items():
         for _ in range(warm_up):
+            if name in before:
+                before[name]()
             call()
-        repeats[name] = _repeats(call, least_round_s)
+        repeats[name] = 1 if name in before else _repeats(call, least_round_s)
     wall: dict[str, list[float]] = {name: [] for name in calls}
     cpu: dict[str, list[float]] = {name: [] for name in calls}
     names = list(calls)
@@ -65,6 +75,8 @@ def measure(
         # the order turns, so that no call always runs in the wake of the same other one
         for name in names[turn % len(names) :] + names[: turn % len(names)]:
             call, times = calls[name], range(repeats[name])
+            if name in before:
+                before[name]()
             cpu_started, started = time.process_time(), time.perf_counter()
             for _ in times:
                 call()
