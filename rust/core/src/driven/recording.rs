@@ -144,7 +144,7 @@ impl Recording {
             let joined = join_steps(position);
             smooth = smoothed(&joined)?;
             joined
-        } else if resolution.step > NEGLIGIBLE_NOISE * span(&smooth) {
+        } else {
             // Noise faster than any start of a motion is taken off first.
             let quick_hz = TREMBLE_OVER_BAND * band.upper_hz;
             let (quick, quick_hz) = if quick_hz < 0.45 * sample_rate_hz {
@@ -156,14 +156,17 @@ impl Recording {
                 (position.to_vec(), 0.5 * sample_rate_hz)
             };
             let certain = CERTAIN * noise(&quick, &smooth, (kinematic_hz / quick_hz).min(0.9));
-            resolution.step = 2.0 * certain;
-            let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
-            let quiet = held(&quick, &smooth, &turns, certain);
-            smooth = smoothed(&quiet)?;
-            quiet
-        } else {
-            resolution.step = resolution.step.max(FINEST * span(&smooth));
-            position.to_vec()
+            // Smoothing takes the corners of a quick motion off as well: only what is left of it all along is noise.
+            if 2.0 * certain > NEGLIGIBLE_NOISE * span(&smooth) {
+                resolution.step = 2.0 * certain;
+                let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
+                let quiet = held(&quick, &smooth, &turns, certain);
+                smooth = smoothed(&quiet)?;
+                quiet
+            } else {
+                resolution.step = resolution.step.max(FINEST * span(&smooth));
+                position.to_vec()
+            }
         };
         let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
         let strokes = strokes(&turns, &seen, resolution.step, sample_rate_hz);
