@@ -27,6 +27,8 @@ PRACTICAL_GAIN = 0.01
 # A law is an idealisation: of the sum of squares that it takes off it may leave this share in a shape of its own. A
 # gap of 2 degrees leaves half of it.
 LAW_ACCURACY = 0.01
+# What a law leaves has no shape of the catalogue: an effect that takes this share of the rest is more than that.
+MUCH_OF_THE_REST = 0.2
 # Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
 REFINED_WITHIN = 1.6
 BENT_WITHIN = 6.0
@@ -174,7 +176,8 @@ def beyond_the_law(base: Search, better: Search, explained: float) -> bool:
     explained : float
         The held-out sum of squares that the effects added before have taken off.
     """
-    return base.held_out_loss - better.held_out_loss >= LAW_ACCURACY * explained
+    fall = base.held_out_loss - better.held_out_loss
+    return fall >= LAW_ACCURACY * explained or fall >= MUCH_OF_THE_REST * base.held_out_loss
 
 
 def equivalent(found: Sequence[Candidate]) -> list[Candidate]:

@@ -204,7 +204,8 @@ def confusable(table: Signatures, among: Sequence[str] | None = None) -> list[tu
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
             ways = [(table.cosine(x, y), x, y) for x, y in ((a, b), (b, a)) if not folds_into(y, x, structure)]
-            cosine, effect, rival = max(ways)
+            # Where both ways are alike to what can be shown, the order of the catalogue decides, not a rounding.
+            cosine, effect, rival = max(ways, key=lambda way: round(way[0], 4))
             if cosine > CONFUSABLE:
                 found.append((effect, rival, cosine))
     return sorted(found, key=lambda p: -p[2])

@@ -16,7 +16,7 @@ impl Law for Lead {
         cause: "A filter or tracking loop in the angle channel only, channels sampled one after the other, a command recorded in place of the torque.",
         check: "Record both channels on one clock with the same filter; ask for the logger's filter settings.",
         typical: "1 to 50 ms",
-        source: "a dead time of the other channel; on the EMPS axis the recorded command leads by one sample of 1 ms (Janot, Gautier, Brunot 2019)",
+        source: "a dead time of the other channel; on the EMPS axis (Janot, Gautier, Brunot 2019) the recorded command leads by 0.8 ms",
         parameters: &[Parameter {
             key: "time_s",
             symbol: "tau",
