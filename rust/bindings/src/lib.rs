@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::needless_pass_by_value)]
 
 mod driven;
+mod dynamics;
 mod effects;
 mod error;
 mod regression;
@@ -16,6 +17,8 @@ mod _core {
 
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
+    #[pymodule_export]
+    use crate::dynamics::{simulate_steering, steering_parameters};
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]
