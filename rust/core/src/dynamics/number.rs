@@ -52,6 +52,16 @@ impl Neg for Pure {
     }
 }
 
+/// A select by bits: an `if` would invite the compiler to branch, and a loop with a branch in it is not turned into
+/// vector instructions.
+#[inline(always)]
+fn select(condition: bool, yes: Pure, no: Pure) -> Pure {
+    let mask = u64::from(condition).wrapping_neg();
+    Pure(f64::from_bits(
+        (yes.0.to_bits() & mask) | (no.0.to_bits() & !mask),
+    ))
+}
+
 impl Pure {
     /// 0.
     pub const ZERO: Self = Self(0.0);
@@ -62,7 +72,7 @@ impl Pure {
     #[inline(always)]
     #[must_use]
     pub fn when(self, condition: bool, otherwise: Self) -> Self {
-        if condition { self } else { otherwise }
+        select(condition, self, otherwise)
     }
 
     /// Whether it lies in `[-limit, limit]`.
@@ -76,7 +86,7 @@ impl Pure {
     #[inline(always)]
     #[must_use]
     pub fn sign(self) -> Self {
-        Self(f64::from(self.0 > 0.0) - f64::from(self.0 < 0.0))
+        select(self.0 > 0.0, Self::ONE, select(self.0 < 0.0, Self(-1.0), Self::ZERO))
     }
 }
 
@@ -144,8 +154,8 @@ impl Lane for Pure {
 
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
-        let below = if self.0 < low.0 { low.0 } else { self.0 };
-        Self(if below > high.0 { high.0 } else { below })
+        let below = select(self.0 < low.0, low, self);
+        select(below.0 > high.0, high, below)
     }
 }
 
