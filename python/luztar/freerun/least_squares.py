@@ -61,7 +61,11 @@ def jacobian(data: Data, parameters: Parameters, values: np.ndarray) -> tuple[np
     for i in range(count):
         lanes[:, i + 1, i] += steps[:, i]
     out = data.modelled(parameters, lanes.reshape(-1, count)).reshape(sets, count + 1, -1)
+    # A column without an answer beside its start leads nowhere: the parameter stays.
+    lost = ~np.isfinite(out).all(axis=2)
+    out[lost] = 0.0
     derivative = (out[:, 1:] - out[:, :1]) / steps[:, :, None]
+    derivative[lost[:, 1:] | lost[:, :1]] = 0.0
     return data.measured - out[:, 0], derivative
 
 
@@ -102,7 +106,7 @@ def minimise(
     if count == 0:
         return values, best
     damping = np.full(sets, FIRST_DAMPING)
-    active = np.ones(sets, bool)
+    active = np.isfinite(best)
     for _ in range(iterations):
         at = np.flatnonzero(active)
         if not at.size:

@@ -11,20 +11,24 @@ from .parameters import Parameters
 from .record import Record, substeps_for
 
 
-def substeps(records: Sequence[Record], rows: np.ndarray) -> int:
-    """Return the sub-steps that the stiffest of some rows needs."""
+# A lane whose highest circular frequency times the step is above this is not simulated: it is no mechanism that the
+# record could show.
+STIFFEST = 1.0
+# No road wheel turns further than its handwheel.
+FARTHEST = 1.0
+# The column is wound up by a part of the handwheel's angle; the rest turns the road wheel.
+WOUND_SHARE = 0.3
+
+
+def highest_rad_s(records: Sequence[Record], rows: np.ndarray) -> np.ndarray:
+    """Return the highest circular frequency of every row."""
     names = _core.steering_parameters()
     at = {name: i for i, name in enumerate(names)}
     reach = max(float(np.abs(r.drive_rad).max()) for r in records)
-    tangent = rows[:, at["stiffness_nm_per_rad"]] + 3.0 * np.maximum(rows[:, at["hardening_nm_per_rad3"]], 0.0) * (
-        _WOUND_SHARE * reach
-    ) ** 2
-    squared = (rows[:, at["ratio"]] ** 2 * tangent + rows[:, at["aligning_nm_per_rad"]]) / rows[:, at["inertia_kg_m2"]]
-    return substeps_for(records, float(np.sqrt(squared.max())))
-
-
-# The column is wound up by a part of the handwheel's angle; the rest turns the road wheel.
-_WOUND_SHARE = 0.3
+    bend = 3.0 * np.maximum(rows[:, at["hardening_nm_per_rad3"]], 0.0) * (WOUND_SHARE * reach) ** 2
+    tangent = rows[:, at["stiffness_nm_per_rad"]] + bend
+    springs = rows[:, at["ratio"]] ** 2 * tangent + rows[:, at["aligning_nm_per_rad"]]
+    return np.asarray(np.sqrt(springs / rows[:, at["inertia_kg_m2"]]))
 
 
 def predict(parameters: Parameters, records: Sequence[Record], values: np.ndarray) -> list[np.ndarray]:
@@ -42,7 +46,12 @@ def predict(parameters: Parameters, records: Sequence[Record], values: np.ndarra
         One per run. A lane that cannot be simulated is infinite.
     """
     rows, sensors = parameters.rows(np.atleast_2d(values))
-    steps = substeps(records, rows)
+    frequency = highest_rad_s(records, rows)
+    typical = float(np.median(frequency))
+    steps = substeps_for(records, typical)
+    slowest = min(r.rate_hz for r in records)
+    wild = ~(frequency <= STIFFEST * slowest * steps)
+    rows[wild] = rows[int(np.argmin(np.abs(frequency - typical)))]
     out = []
     for r in records:
         phi = np.empty((len(rows), r.drive_rad.size))
@@ -66,6 +75,9 @@ def predict(parameters: Parameters, records: Sequence[Record], values: np.ndarra
             phi = _late(phi, sensors["delay.time_s"] * r.rate_hz)
         if offset is not None:
             phi += offset[:, None]
+        # A spring that softens lets go of a body that is wound up too far: such a lane has no answer.
+        away = wild | ~(np.abs(phi).max(axis=1) < FARTHEST * float(np.abs(r.drive_rad).max()))
+        phi[away] = np.inf
         out.append(phi)
     return out
 

@@ -23,32 +23,54 @@ pub struct Drive {
     step_s: f64,
 }
 
-/// The drive over one sub-step: at its start, middle and end.
+/// One channel over one sub-step: at its start, middle and end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parabola {
+    start: Pure,
+    middle: Pure,
+    end: Pure,
+}
+
+/// The drive over one sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    psi: [Pure; 3],
-    load: [Pure; 3],
+    psi: Parabola,
+    load: Parabola,
 }
 
 impl Span {
     /// Angle and load at a share of the sub-step, by the parabola through its three values.
     #[inline(always)]
     pub fn at(&self, share: Pure) -> (Pure, Pure) {
-        (parabola(self.psi, share), parabola(self.load, share))
+        (self.psi.at(share), self.load.at(share))
     }
 
-    /// Angle and load at the start, middle or end.
+    /// Angle and load in the middle.
     #[inline(always)]
-    pub fn point(&self, which: usize) -> (Pure, Pure) {
-        (self.psi[which], self.load[which])
+    pub fn middle(&self) -> (Pure, Pure) {
+        (self.psi.middle, self.load.middle)
+    }
+
+    /// Angle and load at the end.
+    #[inline(always)]
+    pub fn end(&self) -> (Pure, Pure) {
+        (self.psi.end, self.load.end)
     }
 }
 
-#[inline(always)]
-fn parabola([start, middle, end]: [Pure; 3], share: Pure) -> Pure {
-    let slope = middle * Pure(4.0) - start * Pure(3.0) - end;
-    let bend = (start - middle * Pure(2.0) + end) * Pure(2.0);
-    start + share * (slope + share * bend)
+impl Parabola {
+    const ZERO: Self = Self {
+        start: Pure::ZERO,
+        middle: Pure::ZERO,
+        end: Pure::ZERO,
+    };
+
+    #[inline(always)]
+    fn at(&self, share: Pure) -> Pure {
+        let slope = self.middle * Pure(4.0) - self.start * Pure(3.0) - self.end;
+        let bend = (self.start - self.middle * Pure(2.0) + self.end) * Pure(2.0);
+        self.start + share * (slope + share * bend)
+    }
 }
 
 impl Drive {
@@ -121,12 +143,16 @@ impl Drive {
     pub(super) fn span(&self, step: usize) -> Span {
         let three = |of: &[f64]| {
             let here = &of[2 * step..2 * step + 3];
-            [Pure(here[0]), Pure(here[1]), Pure(here[2])]
+            Parabola {
+                start: Pure(here[0]),
+                middle: Pure(here[1]),
+                end: Pure(here[2]),
+            }
         };
         Span {
             psi: three(&self.handwheel),
             load: if self.load.is_empty() {
-                [Pure::ZERO; 3]
+                Parabola::ZERO
             } else {
                 three(&self.load)
             },

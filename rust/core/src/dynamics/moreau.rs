@@ -12,7 +12,7 @@ use super::split::Step;
 #[inline(always)]
 pub(super) fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> Step {
     let rate = h / body.inertia;
-    let (psi, load) = span.point(2);
+    let (psi, load) = span.end();
     let torque = body.torque(psi, load, phi);
     let s = v.sign();
     let free = v + rate * (torque - body.curved(v, s));

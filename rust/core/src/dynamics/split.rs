@@ -33,7 +33,7 @@ pub(super) fn step<const CURVED: bool>(body: &OneMass<Pure>, span: &Span, h: Pur
     let half = Pure(0.5);
     let s = v.sign();
     let phi_middle = phi + h * v * half;
-    let (psi, load) = span.point(1);
+    let (psi, load) = span.middle();
     let torque = body.torque(psi, load, phi_middle);
     let k = h * body.linear(Pure::ONE) * half / body.inertia;
     let rate = h / body.inertia;
@@ -53,7 +53,7 @@ pub(super) fn step<const CURVED: bool>(body: &OneMass<Pure>, span: &Span, h: Pur
     let phi_turn = phi + moving * h * v * half;
     let (psi, load) = span.at(moving);
     let at_turn = body.torque(psi, load, phi_turn);
-    let (psi, load) = span.point(2);
+    let (psi, load) = span.end();
     let at_end = body.torque(psi, load, phi_turn);
     let limit_turn = body.held(at_turn.sign());
     let limit_end = body.held(at_end.sign());
