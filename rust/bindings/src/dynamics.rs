@@ -1,11 +1,7 @@
 //! `luztar._core.simulate_steering`: free runs of the steering model, many parameter sets at once.
 
-use luztar::dynamics::{
-    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, Start, Width, simulate,
-};
-use numpy::{
-    PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods,
-};
+use luztar::dynamics::{Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, Start, Width, simulate};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::error::CoreError;
@@ -36,7 +32,10 @@ pub fn simulate_steering(
     let bodies = bodies(&parameters)?;
     let starts = self::starts(&starts)?;
     let psi = handwheel_rad.as_slice()?;
-    let load = load_nm.as_ref().map(PyReadonlyArray1::as_slice).transpose()?;
+    let load = load_nm
+        .as_ref()
+        .map(PyReadonlyArray1::as_slice)
+        .transpose()?;
     let drive = Drive::new(psi, load, sample_rate_hz, substeps).map_err(CoreError)?;
     let batch = Batch {
         bodies: &bodies,
@@ -79,7 +78,10 @@ fn starts(starts: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Start>> {
         .into());
     }
     let (rows, _) = starts.as_slice()?.as_chunks::<2>();
-    Ok(rows.iter().map(|&[phi, speed]| Start { phi, speed }).collect())
+    Ok(rows
+        .iter()
+        .map(|&[phi, speed]| Start { phi, speed })
+        .collect())
 }
 
 fn kernel(name: &str) -> PyResult<Kernel> {

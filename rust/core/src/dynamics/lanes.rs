@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::Error;
 
-use super::drive::Drive;
+use super::drive::{Drive, Span};
 use super::number::Pure;
 use super::one_mass::{OneMass, PARAMETERS};
 use super::{moreau, split};
@@ -95,7 +95,11 @@ pub fn simulate(
     if !speed.is_empty() {
         length("speed", speed.len(), lanes * samples)?;
     }
-    let block = if lanes <= SMALL_BLOCK { SMALL_BLOCK } else { BLOCK };
+    let block = if lanes <= SMALL_BLOCK {
+        SMALL_BLOCK
+    } else {
+        BLOCK
+    };
     let curved = batch.bodies.iter().any(OneMass::is_curved);
     let per_block = block * samples;
     // Without a place for the speeds every block gets an empty one.
@@ -112,9 +116,31 @@ pub fn simulate(
             let last = (first + block).min(lanes);
             let (bodies, starts) = (&batch.bodies[first..last], &batch.starts[first..last]);
             if block == SMALL_BLOCK {
-                run(Task::<SMALL_BLOCK> { bodies, starts, drive, kernel: batch.kernel, curved, phi, speed }, batch.width);
+                run(
+                    Task::<SMALL_BLOCK> {
+                        bodies,
+                        starts,
+                        drive,
+                        kernel: batch.kernel,
+                        curved,
+                        phi,
+                        speed,
+                    },
+                    batch.width,
+                );
             } else {
-                run(Task::<BLOCK> { bodies, starts, drive, kernel: batch.kernel, curved, phi, speed }, batch.width);
+                run(
+                    Task::<BLOCK> {
+                        bodies,
+                        starts,
+                        drive,
+                        kernel: batch.kernel,
+                        curved,
+                        phi,
+                        speed,
+                    },
+                    batch.width,
+                );
             }
         });
     Ok(())
@@ -160,6 +186,30 @@ pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
     Ok(())
 }
 
+/// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
+/// code for the instruction set.
+trait Advance {
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step;
+}
+
+struct Split<const CURVED: bool>;
+
+impl<const CURVED: bool> Advance for Split<CURVED> {
+    #[inline(always)]
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
+        split::step::<CURVED>(body, span, h, phi, v)
+    }
+}
+
+struct MoreauJean;
+
+impl Advance for MoreauJean {
+    #[inline(always)]
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
+        moreau::step(body, span, h, phi, v)
+    }
+}
+
 /// One block of lanes.
 struct Task<'a, const N: usize> {
     bodies: &'a [OneMass<f64>],
@@ -197,19 +247,16 @@ impl<const N: usize> WithSimd for Task<'_, N> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         match (self.kernel, self.curved) {
-            (Kernel::Split, false) => self.along(split::step::<false>),
-            (Kernel::Split, true) => self.along(split::step::<true>),
-            (Kernel::MoreauJean, _) => self.along(moreau::step),
+            (Kernel::Split, false) => self.along::<Split<false>>(),
+            (Kernel::Split, true) => self.along::<Split<true>>(),
+            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
         }
     }
 }
 
 impl<const N: usize> Task<'_, N> {
     #[inline(always)]
-    fn along(
-        self,
-        step: impl Fn(&OneMass<Pure>, &super::drive::Span, Pure, Pure, Pure) -> split::Step,
-    ) {
+    fn along<A: Advance>(self) {
         let last = self.bodies.len() - 1;
         // Lanes beyond the last repeat it, so that every block is full.
         let mut table = [[0.0; N]; PARAMETERS];
@@ -240,7 +287,7 @@ impl<const N: usize> Task<'_, N> {
                 let span = self.drive.span(sample * self.drive.substeps() + sub);
                 for lane in 0..N {
                     let body = OneMass::gather(&table, lane);
-                    let next = step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));
+                    let next = A::step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));
                     phi[lane] = next.phi.0;
                     v[lane] = next.speed.0;
                 }

@@ -86,7 +86,11 @@ impl Pure {
     #[inline(always)]
     #[must_use]
     pub fn sign(self) -> Self {
-        select(self.0 > 0.0, Self::ONE, select(self.0 < 0.0, Self(-1.0), Self::ZERO))
+        select(
+            self.0 > 0.0,
+            Self::ONE,
+            select(self.0 < 0.0, Self(-1.0), Self::ZERO),
+        )
     }
 }
 

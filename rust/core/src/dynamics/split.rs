@@ -29,7 +29,13 @@ pub(super) struct Step {
 
 /// One sub-step of length `h`.
 #[inline(always)]
-pub(super) fn step<const CURVED: bool>(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> Step {
+pub(super) fn step<const CURVED: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    h: Pure,
+    phi: Pure,
+    v: Pure,
+) -> Step {
     let half = Pure(0.5);
     let s = v.sign();
     let phi_middle = phi + h * v * half;
