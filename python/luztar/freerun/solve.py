@@ -17,8 +17,10 @@ from .sizes import sizes_of
 from .starts import first_starts, starts_with
 
 # Iterations of the search from every start, and how many of the starts go on to the end.
-SHORT_SEARCH = 4
-FINALISTS = 3
+SHORT_SEARCH = 3
+FINALISTS = 2
+# A start that ends where another one does is not followed twice.
+SAME_LOSS = 1e-4
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,11 @@ def solve_from(problem: Problem, model: Model, found: Mapping[str, float]) -> So
 
 def _search(problem: Problem, parameters: Parameters, starts: np.ndarray) -> tuple[np.ndarray, float]:
     values, loss = minimise(problem.data, parameters, starts, iterations=SHORT_SEARCH)
-    best = np.argsort(loss)[:FINALISTS]
+    order = np.argsort(loss)
+    best = [int(order[0])]
+    for i in map(int, order[1:]):
+        if len(best) < FINALISTS and loss[i] > loss[best[-1]] * (1.0 + SAME_LOSS):
+            best.append(i)
     values, loss = minimise(problem.data, parameters, values[best])
     at = int(np.argmin(loss))
     return values[at], float(loss[at])
