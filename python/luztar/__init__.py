@@ -12,6 +12,7 @@ from . import errors as errors
 from ._core import __version__ as __version__
 
 if TYPE_CHECKING:
+    from . import dynamics as dynamics
     from . import effects as effects
     from . import measurement as measurement
     from . import model as model
@@ -36,6 +37,7 @@ _LAZY: dict[str, str] = {
     "Runs": "measurement:Runs",
     "compare": "diagnosis:compare",
     "diagnose": "diagnosis:diagnose",
+    "dynamics": "dynamics",
     "effects": "effects",
     "fit": "diagnosis:fit",
     "measurement": "measurement",

@@ -66,4 +66,10 @@ def compare(fitted: Fit) -> Comparison:
         From ``luztar.fit``.
     """
     fitted = given_fit("compare", fitted)
+    if fitted.model.structure.is_free:
+        from ..freerun import FreeFit
+        from ..freerun import compare as compare_free
+
+        assert isinstance(fitted, FreeFit)
+        return compare_free(fitted)
     return Comparison(fitted, regimes(fitted), residual_map(fitted), lack_of_fit(fitted))

@@ -179,6 +179,12 @@ def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, in
         Called with (done, total).
     """
     fitted = given_fit("diagnose", fitted)
+    if fitted.model.structure.is_free:
+        from ..freerun import FreeFit
+        from ..freerun import diagnose as diagnose_free
+
+        assert isinstance(fitted, FreeFit)
+        return diagnose_free(fitted, progress=progress)
     found, features = try_all(fitted, progress)
     before = baseline(fitted).losses
     gains = np.column_stack([before - c.search.losses for c in found]) if found else None

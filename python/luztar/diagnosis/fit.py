@@ -131,6 +131,10 @@ def fit(model: Model, runs: Run | Sequence[Run], held_out: Run | Sequence[Run] =
     """
     model, fitted = given_model(model), given_runs("runs", runs)
     left_out = given_runs("held_out", held_out)
+    if model.structure.is_free:
+        from ..freerun import fit as fit_free
+
+        return fit_free(model, not_held_out(fitted, left_out), left_out)
     unseen = prepare_measured(left_out, model) if left_out else ()
     return fit_prepared(model, prepare_measured(not_held_out(fitted, left_out), model), unseen)
 

@@ -135,6 +135,11 @@ def study(
     if not isinstance(max_effects, int) or isinstance(max_effects, bool) or max_effects < 0:
         raise ParameterError(f"max_effects is {max_effects!r}", "max_effects", "Give a whole number from 0.")
     model, runs, held_out = given_model(model), given_runs("runs", runs), given_runs("held_out", held_out)
+    if model.structure.is_free:
+        from ..freerun import study as study_free
+
+        left = not_held_out(runs, held_out)
+        return study_free(model, left, held_out, max_effects=max_effects, progress=progress)
     prepared = prepare_measured(not_held_out(runs, held_out), model)
     unseen = prepare_measured(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)

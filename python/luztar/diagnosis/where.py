@@ -102,7 +102,7 @@ def regimes(fitted: Fit, residual: Sequence[np.ndarray] | None = None) -> tuple[
 
 def _masks(fitted: Fit) -> list[tuple[str, np.ndarray, str]]:
     runs = fitted.runs
-    rig = fitted.model.structure_name == "rig"
+    turns = fitted.model.structure.turns
     speed = np.abs(_stack(runs, [r.speed for r in runs]))
     motion = _stack(runs, [r.motion for r in runs])
     direction = _stack(runs, [_direction(r) for r in runs])
@@ -115,10 +115,10 @@ def _masks(fitted: Fit) -> list[tuple[str, np.ndarray, str]]:
     slow_limit, fast_limit = np.quantile(speed[moving], [0.25, 0.75]) if moving.any() else (rest, rest)
 
     def place(value: float) -> str:
-        return f"{math.degrees(value):.0f}°" if rig else f"{value * 1000:.0f} mm"
+        return f"{math.degrees(value):.0f}°" if turns else f"{value * 1000:.0f} mm"
 
     def pace(value: float) -> str:
-        return f"{math.degrees(value):.0f} deg/s" if rig else f"{value * 1000:.0f} mm/s"
+        return f"{math.degrees(value):.0f} deg/s" if turns else f"{value * 1000:.0f} mm/s"
 
     masks = [
         ("after_reversal", since < AFTER_REVERSAL_S, f"within {AFTER_REVERSAL_S:g} s after a reversal"),
@@ -128,12 +128,12 @@ def _masks(fitted: Fit) -> list[tuple[str, np.ndarray, str]]:
         (
             "increasing",
             moving & (direction > 0),
-            "while the angle increases" if rig else "while the position increases",
+            "while the angle increases" if turns else "while the position increases",
         ),
         (
             "decreasing",
             moving & (direction < 0),
-            "while the angle decreases" if rig else "while the position decreases",
+            "while the angle decreases" if turns else "while the position decreases",
         ),
         ("early", clock < 1.0 / 3.0, "in the first third of the runs"),
         ("late", clock > 2.0 / 3.0, "in the last third of the runs"),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import difflib
 import functools
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import _core
 from ..errors import ModelError
-from . import axis_words
+from . import axis_words, steering_words
 
 # An axis has newtons and metres where a rig has newton metres and radians. A phase stays an angle.
 _AXIS_UNITS = (("kg_m2", "kg"), ("nm", "n"), ("rad3", "m3"), ("rad2", "m2"), ("rad", "m"))
@@ -146,9 +147,49 @@ def _all(structure: str) -> dict[str, Card]:
                 replace(p, key=axis_key(p.key), meaning=axis_words.meaning(p.meaning)) for p in parameters
             )
             raw |= {"typical": "", **axis_words.WORDS.get(raw["name"], {})}
+        if structure == "steering":
+            if raw["name"] not in steering_words.WORDS:
+                continue
+            raw |= {"typical": "", **steering_words.WORDS[raw["name"]]}
+            parameters = tuple(_for_steering(raw["name"], p) for p in parameters)
+            parameters = tuple(p for p in parameters if p.key not in steering_words.RIGID)
         fields: dict[str, Any] = {**raw, "structures": tuple(raw["structures"]), "parameters": parameters}
         found[raw["name"]] = Card(**fields)
     return found
+
+
+def _for_steering(effect: str, p: Parameter) -> Parameter:
+    if effect == "offset":
+        return replace(p, key="level_rad", meaning="shift of the road wheel's angle")
+    return replace(p, **steering_words.MEANINGS.get(p.key, {}))
+
+
+@functools.cache
+def own_card(structure: str) -> Card | None:
+    """Return the card of a structure's own parameters, named as the structure; None where it has none."""
+    if structure != "steering":
+        return None
+    parameters = tuple(
+        Parameter(key, symbol, meaning, low, math.inf, "linear", None)
+        for key, symbol, meaning, low in steering_words.OWN
+    )
+    words = dict.fromkeys(("look", "cause", "check", "typical"), "")
+    return Card(
+        **words,
+        name="steering",
+        title="steering mechanism",
+        kind="structure",
+        equation="I phi'' = p K luz(psi - p phi, gap/2) - c phi - friction",
+        source="paper eq. (5)",
+        behind_gap=False,
+        per_turn=False,
+        shapes_others=True,
+        becomes=None,
+        channel=None,
+        needs=None,
+        structures=(),
+        parameters=parameters,
+    )
 
 
 def cards(structure: str = "rig") -> tuple[Card, ...]:
@@ -157,7 +198,7 @@ def cards(structure: str = "rig") -> tuple[Card, ...]:
     Parameters
     ----------
     structure : str
-        ``rig`` or ``axis``: decides the units in the parameters' keys.
+        ``rig``, ``axis`` or ``steering``: decides the units in the parameters' keys and which effects there are.
     """
     return tuple(_all(structure).values())
 
@@ -173,7 +214,12 @@ def card(name: str, structure: str = "rig") -> Card:
     known = _all(structure)
     if name in known:
         return known[name]
+    own = own_card(structure)
+    if own is not None and name == own.name:
+        return own
     near = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
     guess = f"Did you mean {' or '.join(near)}? " if near else ""
     listed = ", ".join(c.name for c in known.values() if not c.is_decoy)
+    if structure == "steering" and name in _all("rig"):
+        raise ModelError(f"'{name}' is no effect of a steering model", "effects", f"{guess}Its effects are: {listed}.")
     raise ModelError(f"there is no effect '{name}'", "effects", f"{guess}Known effects: {listed}.")

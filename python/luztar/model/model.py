@@ -9,11 +9,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ModelError
-from .cards import card
+from .cards import card, own_card
+from .steering_words import SHORT_KEYS
 from .structure import Structure, structure
 
 if TYPE_CHECKING:
     import os
+
+_POSITIVE = ("steering.inertia_kg_m2", "steering.ratio", "steering.stiffness_nm_per_rad")
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,8 @@ class Model:
     Attributes
     ----------
     structure_name : str
-        ``rig`` (angle in, torque out) or ``axis`` (position in, force out).
+        ``rig`` (angle in, torque out), ``axis`` (position in, force out) or ``steering`` (handwheel in, road wheel
+        out).
     effects : tuple of str
         Names of the catalogue.
     known : mapping
@@ -69,8 +73,9 @@ class Model:
     def __post_init__(self) -> None:
         structure(self.structure_name)
         object.__setattr__(self, "effects", tuple(self.effects))
-        object.__setattr__(self, "known", MappingProxyType(dict(self.known)))
-        object.__setattr__(self, "start", MappingProxyType(dict(self.start)))
+        for table in ("known", "start"):
+            given = {self._whole_key(k): v for k, v in getattr(self, table).items()}
+            object.__setattr__(self, table, MappingProxyType(given))
         seen: set[str] = set()
         for name in self.effects:
             needed = card(name, self.structure_name)
@@ -79,6 +84,8 @@ class Model:
                 raise ModelError(f"'{name}' is a decoy without physics", "effects", remedy)
             if name in seen:
                 raise ModelError(f"the effect '{name}' is listed twice", "effects", "Remove one of them.")
+            if needed.kind == "structure":
+                raise ModelError(f"'{name}' is the structure and no effect", "effects", "Take it out of the effects.")
             seen.add(name)
             if needed.needs and needed.needs not in self.effects:
                 raise ModelError(f"'{name}' needs '{needed.needs}'", "effects", f"Add '{needed.needs}' to the effects.")
@@ -91,6 +98,9 @@ class Model:
         for key in self.start:
             if key in self.known:
                 raise ModelError(f"{key} is known and has a start value too", "start", "Take it out of one of them.")
+        if self.structure.is_free and self.comparison != Comparison():
+            remedy = "Leave the comparison (--band, decimate, filter_already_applied) out."
+            raise ModelError("a free run is compared as recorded, without a filter", "comparison", remedy)
         band, decimate = self.comparison.band_hz, self.comparison.decimate
         if band is not None and not (math.isfinite(band) and band > 0):
             raise ModelError(f"the band is {band} Hz", "comparison.band_hz", "Give a frequency above 0.")
@@ -109,7 +119,8 @@ class Model:
                 raise ModelError(f"pitch_m is {value}", where, "Give the travel per turn, above 0.")
             return
         effect, _, parameter = key.partition(".")
-        if effect not in self.effects:
+        own = own_card(self.structure_name)
+        if effect not in self.effects and not (own is not None and effect == own.name):
             listed = ", ".join(self.effects)
             raise ModelError(f"'{key}' belongs to no effect of the model", where, f"Its effects are: {listed}.")
         parameters = {p.key: p for p in card(effect, self.structure_name).parameters}
@@ -118,6 +129,12 @@ class Model:
         low, high = parameters[parameter].low, parameters[parameter].high
         if not low <= value <= high:
             raise ModelError(f"{key} is {value}", where, f"It must lie between {low:g} and {high:g}.")
+        if value == 0.0 and key in _POSITIVE:
+            raise ModelError(f"{key} is {value}", where, "It must be above 0.")
+
+    def _whole_key(self, key: str) -> str:
+        """Return the key with the structure's name where a short one was given (``ratio``)."""
+        return f"{self.structure_name}.{SHORT_KEYS[key]}" if self.structure.is_free and key in SHORT_KEYS else key
 
     @classmethod
     def rig(cls, **comparison: Any) -> Model:
@@ -129,6 +146,22 @@ class Model:
         """Return the model of a driven axis: offset, Coulomb and viscous friction, inertia."""
         known = {} if pitch_m is None else {"pitch_m": pitch_m}
         return cls("axis", structure("axis").effects, known, comparison=Comparison(**comparison))
+
+    @classmethod
+    def steering(cls, **known: float) -> Model:
+        """Return the seed paper's one-mass steering model with viscous friction.
+
+        Parameters
+        ----------
+        **known : float
+            What is given and not estimated: ``ratio`` (handwheel over road wheel), ``stiffness`` [Nm/rad] (of the
+            spring at the handwheel), ``inertia`` [kg m²] and ``aligning`` [Nm/rad] (at the road wheel). A fit needs
+            the ratio and one of the others: angles alone do not show the scale of the torques.
+        """
+        wrong = sorted(set(known) - set(SHORT_KEYS))
+        if wrong:
+            raise ModelError(f"there is no '{wrong[0]}'", "Model.steering", f"Known are: {', '.join(SHORT_KEYS)}.")
+        return cls("steering", structure("steering").effects, known)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Model:
@@ -149,8 +182,8 @@ class Model:
         return structure(self.structure_name)
 
     @property
-    def band_hz(self) -> float:
-        """Upper edge of the comparison."""
+    def band_hz(self) -> float | None:
+        """Upper edge of the comparison; None where nothing is filtered."""
         return self.comparison.band_hz or self.structure.band_hz
 
     def with_band(self, band_hz: float | None) -> Model:

@@ -20,8 +20,8 @@ class Structure:
     motion_unit, effort_unit : str
     effects : tuple of str
         The default model.
-    band_hz : float
-        Upper edge of the comparison where the model file does not say.
+    band_hz : float or None
+        Upper edge of the comparison where the model file does not say; None compares without a filter.
     unknown_travel_share : float
         The friction state of a run is unknown until its first motion has run through the widest gap or break-away to be
         expected, as a share of the range: 3.6 degrees of 120 for a steering wheel, a thousandth for a driven axis.
@@ -33,26 +33,37 @@ class Structure:
     motion_unit: str
     effort_unit: str
     effects: tuple[str, ...]
-    band_hz: float
+    band_hz: float | None
     unknown_travel_share: float
+
+    @property
+    def turns(self) -> bool:
+        """Whether the motion is an angle."""
+        return self.motion_unit == "rad"
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the model is run freely, motion out, instead of being asked for the effort of a given motion."""
+        return self.name == "steering"
 
     def hysteresis(self, motion_range: float) -> float:
         """Return how far the motion must come back to count as a reversal, in its unit."""
-        return math.radians(1.0) if self.name == "rig" else 0.01 * motion_range
+        return math.radians(1.0) if self.turns else 0.01 * motion_range
 
     def minimum_travel(self, motion_range: float) -> float:
         """Return the least travel of a stroke, in the motion's unit."""
-        return math.radians(5.0) if self.name == "rig" else 0.05 * motion_range
+        return math.radians(5.0) if self.turns else 0.05 * motion_range
 
     @property
     def rest_speed(self) -> float | None:
         """The speed below which the mechanism counts as at rest or reversing; None: a share of the top speed."""
-        return math.radians(2.0) if self.name == "rig" else None
+        return math.radians(2.0) if self.turns else None
 
 
 STRUCTURES = {
     "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0, 0.03),
     "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0, 0.001),
+    "steering": Structure("steering", "handwheel", "roadwheel", "rad", "rad", ("viscous",), None, 0.0),
 }
 
 

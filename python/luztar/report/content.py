@@ -231,7 +231,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
             ("Model as given", ", ".join(study.steps[0].fit.model.effects) or "no effects"),
             ("Model after the last step", ", ".join(model.effects)),
             ("Given, not estimated", ", ".join(f"{k} = {number(v)}" for k, v in model.known.items()) or "nothing"),
-            ("Band of the comparison", f"0 to {model.band_hz:g} Hz"),
+            ("Band of the comparison", "all of it" if model.band_hz is None else f"0 to {model.band_hz:g} Hz"),
             ("Filter of the comparison", _comparison_filter(study)),
             ("Unseen", _unseen(study)),
             ("Noise floor", study.noise_floor.method),
@@ -243,6 +243,8 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
 
 
 def _comparison_filter(study: Study) -> str:
+    if study.model.structure.is_free:
+        return "none: the angles are compared as recorded"
     text = "low pass of 4 poles, forward and backward, the same on measurement and model"
     if study.model.comparison.filter_already_applied:
         text += "; the measurement was filtered before and is not filtered again"

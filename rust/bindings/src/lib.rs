@@ -4,6 +4,7 @@
 
 mod door;
 mod driven;
+mod dynamics;
 mod effects;
 mod error;
 mod regression;
@@ -19,6 +20,8 @@ mod _core {
 
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
+    #[pymodule_export]
+    use crate::dynamics::{simulate_steering, steering_parameters};
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]

@@ -4,6 +4,7 @@
 //! no Python, no files, no clock and no global state.
 
 pub mod driven;
+pub mod dynamics;
 pub mod effects;
 pub mod error;
 pub mod projections;

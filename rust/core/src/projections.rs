@@ -6,9 +6,12 @@
 //! Source: Wieckowski, Zardecki, "Influence of freeplay and friction in steering system on double lane change
 //! manoeuvre", equations (1) to (4).
 
+use crate::effects::Lane;
+
 /// `x - clamp(x, -a, a)`: zero inside `[-a, a]`, the distance to it outside. Needs `a >= 0`.
 #[must_use]
-pub fn luz(x: f64, a: f64) -> f64 {
+#[inline]
+pub fn luz<L: Lane>(x: L, a: L) -> L {
     x - x.clamp(-a, a)
 }
 

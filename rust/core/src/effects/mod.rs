@@ -39,6 +39,14 @@ pub use card::{Card, Grid, Kind, Parameter, Role};
 pub use lane::Lane;
 pub use law::{Channels, Contact, Effect, Law, Motion};
 
+pub(crate) use asymmetric_coulomb::AsymmetricCoulomb;
+pub(crate) use asymmetric_viscous::AsymmetricViscous;
+pub(crate) use drag::Drag;
+pub(crate) use hardening::Hardening;
+pub(crate) use stiffness::Stiffness;
+pub(crate) use stribeck::Stribeck;
+pub(crate) use viscous::Viscous;
+
 use crate::Error;
 
 /// Every effect, in the order in which lists and reports show them.

@@ -43,6 +43,7 @@ impl Law for Stribeck {
     };
     const COLUMNS: usize = 1;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let ratio = motion.speed / L::splat(inner[0]);
         out[0] = (-(ratio * ratio)).exp();

@@ -1,0 +1,297 @@
+//! Many parameter sets side by side, driven by one record.
+//!
+//! Lanes lie next to each other in blocks; the loop over the lanes of a block holds nothing but arithmetic and selects,
+//! so that the compiler turns it into vector instructions. Which ones is decided at run time. Every lane goes through
+//! the same operations in the same order whatever its neighbours, the block or the thread, and nothing is fused: the
+//! bits are the same everywhere.
+
+use pulp::WithSimd;
+use rayon::prelude::*;
+
+use crate::Error;
+
+use super::drive::{Drive, Span};
+use super::number::Pure;
+use super::one_mass::{OneMass, PARAMETERS};
+use super::{moreau, split};
+
+/// How a step is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kernel {
+    /// Second order through events, the default.
+    Split,
+    /// Moreau and Jean: first order.
+    MoreauJean,
+}
+
+/// Where a lane starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Road-wheel angle, rad.
+    pub phi: f64,
+    /// Its speed, rad/s; 0 is at rest.
+    pub speed: f64,
+}
+
+/// The instruction set to use: the widest there is, or one by name (for tests; the bits are the same).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// The widest that this processor has.
+    Widest,
+    /// Two lanes at a time at most: what every processor of this kind has.
+    Baseline,
+    /// Four lanes at a time, if the processor can.
+    Avx2,
+    /// Eight lanes at a time, if the processor can.
+    Avx512,
+}
+
+/// Lanes of a block: their states stay in the first-level cache.
+const BLOCK: usize = 64;
+/// Few lanes, as in a fit of few parameters, take small blocks, so that none runs empty.
+const SMALL_BLOCK: usize = 8;
+
+/// What to simulate.
+#[derive(Debug, Clone, Copy)]
+pub struct Batch<'a> {
+    /// One body per lane.
+    pub bodies: &'a [OneMass<f64>],
+    /// One start per lane.
+    pub starts: &'a [Start],
+    /// The step.
+    pub kernel: Kernel,
+    /// Instruction set.
+    pub width: Width,
+}
+
+/// Runs every lane along a drive. `phi` and `speed` take the samples of each lane one after the other, lane by lane;
+/// `speed` may be empty if nobody needs it.
+///
+/// # Errors
+/// [`Error::Length`] where an array has the wrong length; [`Error::NonFinite`] or [`Error::OutOfRange`] for a start
+/// that is not finite, or a step that the springs of a lane do not allow (the step times the highest circular
+/// frequency must stay below 2).
+pub fn simulate(
+    batch: Batch<'_>,
+    drive: &Drive,
+    phi: &mut [f64],
+    speed: &mut [f64],
+) -> Result<(), Error> {
+    let lanes = batch.bodies.len();
+    let samples = drive.samples();
+    check(batch, drive)?;
+    let length = |name, got: usize, wanted: usize| {
+        if got == wanted {
+            Ok(())
+        } else {
+            Err(Error::Length {
+                name,
+                expected: format!("{wanted} (lanes times samples)"),
+                got,
+            })
+        }
+    };
+    length("phi", phi.len(), lanes * samples)?;
+    if !speed.is_empty() {
+        length("speed", speed.len(), lanes * samples)?;
+    }
+    let block = if lanes <= SMALL_BLOCK {
+        SMALL_BLOCK
+    } else {
+        BLOCK
+    };
+    let curved = batch.bodies.iter().any(OneMass::is_curved);
+    let per_block = block * samples;
+    // Without a place for the speeds every block gets an empty one.
+    let speeds: Vec<&mut [f64]> = if speed.is_empty() {
+        (0..lanes.div_ceil(block)).map(|_| &mut [][..]).collect()
+    } else {
+        speed.chunks_mut(per_block).collect()
+    };
+    phi.par_chunks_mut(per_block)
+        .zip(speeds)
+        .enumerate()
+        .for_each(|(number, (phi, speed))| {
+            let first = number * block;
+            let last = (first + block).min(lanes);
+            let (bodies, starts) = (&batch.bodies[first..last], &batch.starts[first..last]);
+            if block == SMALL_BLOCK {
+                run(
+                    Task::<SMALL_BLOCK> {
+                        bodies,
+                        starts,
+                        drive,
+                        kernel: batch.kernel,
+                        curved,
+                        phi,
+                        speed,
+                    },
+                    batch.width,
+                );
+            } else {
+                run(
+                    Task::<BLOCK> {
+                        bodies,
+                        starts,
+                        drive,
+                        kernel: batch.kernel,
+                        curved,
+                        phi,
+                        speed,
+                    },
+                    batch.width,
+                );
+            }
+        });
+    Ok(())
+}
+
+pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
+    let lanes = batch.bodies.len();
+    if lanes == 0 || batch.starts.len() != lanes {
+        return Err(Error::Length {
+            name: "starts",
+            expected: format!("{lanes}, as many as bodies and at least one,"),
+            got: batch.starts.len(),
+        });
+    }
+    let wound = drive.reach_rad();
+    for (body, start) in batch.bodies.iter().zip(batch.starts) {
+        for (name, value) in [("start angle", start.phi), ("start speed", start.speed)] {
+            if !value.is_finite() {
+                return Err(Error::NonFinite {
+                    name,
+                    index: 0,
+                    value,
+                });
+            }
+        }
+        let frequency = body.highest_frequency_rad_s(wound + body.ratio * start.phi.abs());
+        let longest = 2.0 / frequency;
+        if drive.step_s() >= longest {
+            let spring = if body.ratio * body.ratio * body.stiffness >= body.aligning {
+                "stiffness_nm_per_rad"
+            } else {
+                "aligning_nm_per_rad"
+            };
+            return Err(Error::OutOfRange {
+                name: "step (seconds)",
+                value: drive.step_s(),
+                interval: format!(
+                    "(0, {longest:.3e}) for the spring {spring}: give more substeps or a higher sample rate"
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
+/// code for the instruction set.
+trait Advance {
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step;
+}
+
+struct Split<const CURVED: bool>;
+
+impl<const CURVED: bool> Advance for Split<CURVED> {
+    #[inline(always)]
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
+        split::step::<CURVED>(body, span, h, phi, v)
+    }
+}
+
+struct MoreauJean;
+
+impl Advance for MoreauJean {
+    #[inline(always)]
+    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
+        moreau::step(body, span, h, phi, v)
+    }
+}
+
+/// One block of lanes.
+struct Task<'a, const N: usize> {
+    bodies: &'a [OneMass<f64>],
+    starts: &'a [Start],
+    drive: &'a Drive,
+    kernel: Kernel,
+    curved: bool,
+    phi: &'a mut [f64],
+    speed: &'a mut [f64],
+}
+
+/// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
+fn run<const N: usize>(task: Task<'_, N>, width: Width) {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        use pulp::Simd;
+        if matches!(width, Width::Widest | Width::Avx512)
+            && let Some(simd) = pulp::x86::V4::try_new()
+        {
+            return Simd::vectorize(simd, task);
+        }
+        if width != Width::Baseline
+            && let Some(simd) = pulp::x86::V3::try_new()
+        {
+            return Simd::vectorize(simd, task);
+        }
+    }
+    let _ = width;
+    task.with_simd(pulp::Scalar::new());
+}
+
+impl<const N: usize> WithSimd for Task<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        match (self.kernel, self.curved) {
+            (Kernel::Split, false) => self.along::<Split<false>>(),
+            (Kernel::Split, true) => self.along::<Split<true>>(),
+            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
+        }
+    }
+}
+
+impl<const N: usize> Task<'_, N> {
+    #[inline(always)]
+    fn along<A: Advance>(self) {
+        let last = self.bodies.len() - 1;
+        // Lanes beyond the last repeat it, so that every block is full.
+        let mut table = [[0.0; N]; PARAMETERS];
+        let (mut phi, mut v) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let of = lane.min(last);
+            for (row, value) in table.iter_mut().zip(self.bodies[of].to_array()) {
+                row[lane] = value;
+            }
+            phi[lane] = self.starts[of].phi;
+            v[lane] = self.starts[of].speed;
+        }
+        let samples = self.drive.samples();
+        let h = Pure(self.drive.step_s());
+        for sample in 0..samples {
+            for lane in 0..=last {
+                self.phi[lane * samples + sample] = phi[lane];
+            }
+            if !self.speed.is_empty() {
+                for lane in 0..=last {
+                    self.speed[lane * samples + sample] = v[lane];
+                }
+            }
+            if sample + 1 == samples {
+                break;
+            }
+            for sub in 0..self.drive.substeps() {
+                let span = self.drive.span(sample * self.drive.substeps() + sub);
+                for lane in 0..N {
+                    let body = OneMass::gather(&table, lane);
+                    let next = A::step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));
+                    phi[lane] = next.phi.0;
+                    v[lane] = next.speed.0;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The default step: drift, torque, drift, with the instants of a reversal and of a break-away located inside it.
+//!
+//! Second order through events at a fixed cost: at most one reversal and one break-away per step are resolved, more of
+//! them leave an error of second order for that step. All selects, no branches; a body in stick has a speed of
+//! exactly 0, and that value is its state. For the closest published relative (Moreau's step with localised
+//! switching points) see Studer, Leine, Glocker 2008, Int. J. Numer. Meth. Engng.
+
+use super::drive::Span;
+use super::number::Pure;
+use super::one_mass::OneMass;
+use crate::effects::Lane;
+
+/// Where one sub-step ended, and what happened in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// Angle at the end.
+    pub phi: Pure,
+    /// Speed at the end; exactly 0 in stick.
+    pub speed: Pure,
+    /// Angle where the speed passed through 0, or at the end where it did not.
+    pub phi_turn: Pure,
+    /// Share of the step until the speed was 0; 1 where it never was.
+    pub moving: Pure,
+    /// Share of the step that was then spent at rest.
+    pub stuck: Pure,
+    /// Speed with which the first part ended.
+    pub speed_turn: Pure,
+}
+
+/// One sub-step of length `h`.
+#[inline(always)]
+pub(super) fn step<const CURVED: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    h: Pure,
+    phi: Pure,
+    v: Pure,
+) -> Step {
+    let half = Pure(0.5);
+    let s = v.sign();
+    let phi_middle = phi + h * v * half;
+    let (psi, load) = span.middle();
+    let torque = body.torque(psi, load, phi_middle);
+    let k = h * body.linear(Pure::ONE) * half / body.inertia;
+    let rate = h / body.inertia;
+    let net = torque - body.kinetic(s);
+    let mut v1 = (v * (Pure::ONE - k) + rate * net) / (Pure::ONE + k);
+    if CURVED {
+        // What curves with speed: predicted at the speed of the start, then taken at the middle.
+        let guess = v1 - rate * body.curved(v, s) / (Pure::ONE + k);
+        v1 = v1 - rate * body.curved((v + guess) * half, s) / (Pure::ONE + k);
+    }
+    let event = (v1 * v).0 <= 0.0;
+    let rested = v.0 == 0.0;
+
+    // The instant at which the speed is 0, and the torque from there on with the body held.
+    let fall = (v - v1).when(event & !rested, Pure::ONE);
+    let moving = (v / fall).when(!rested, Pure::ZERO);
+    let phi_turn = phi + moving * h * v * half;
+    let (psi, load) = span.at(moving);
+    let at_turn = body.torque(psi, load, phi_turn);
+    let (psi, load) = span.end();
+    let at_end = body.torque(psi, load, phi_turn);
+    let limit_turn = body.held(at_turn.sign());
+    let limit_end = body.held(at_end.sign());
+    let breaks_now = at_turn.abs().0 > limit_turn.0;
+    let breaks_later = !breaks_now & (at_end.abs().0 > limit_end.0);
+    let rise = (at_end - at_turn).when(breaks_later, Pure::ONE);
+    let at_break = at_end.sign() * limit_end;
+    let located = ((at_break - at_turn) / rise).clamp(Pure::ZERO, Pure::ONE);
+    let stuck = Pure::ZERO.when(breaks_now, located.when(breaks_later, Pure::ONE));
+
+    // From the break-away to the end, from rest.
+    let way = at_turn.when(breaks_now, at_end);
+    let direction = way.sign();
+    let left = (Pure::ONE - moving) * (Pure::ONE - stuck) * h;
+    let mean = (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic(direction);
+    let damped = body.inertia + left * body.linear(Pure::ONE) * half;
+    let mut v2 = left * mean / damped;
+    if CURVED {
+        let guess = v2 - left * body.curved(Pure::ZERO, direction) / damped;
+        v2 = v2 - left * body.curved(guess * half, direction) / damped;
+    }
+    let v2 = Pure::ZERO.when((v2 * way).0 <= 0.0, v2);
+
+    let phi_plain = phi_middle + h * v1 * half;
+    Step {
+        phi: (phi_turn + left * v2 * half).when(event, phi_plain),
+        speed: v2.when(event, v1),
+        phi_turn: phi_turn.when(event, phi_plain),
+        moving: moving.when(event, Pure::ONE),
+        stuck: ((Pure::ONE - moving) * stuck).when(event, Pure::ZERO),
+        speed_turn: Pure::ZERO.when(event, v1),
+    }
+}
