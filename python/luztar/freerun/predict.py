@@ -10,7 +10,6 @@ from .. import _core
 from .parameters import Parameters
 from .record import Record, substeps_for
 
-
 # A lane whose highest circular frequency times the step is above this is not simulated: it is no mechanism that the
 # record could show.
 STIFFEST = 1.0
