@@ -26,6 +26,9 @@ SPEED_HATS = 6
 # Knots of the hats over travel since the reversal, as shares of the range: a gap or break-away of 0.5 to 12 degrees in
 # 120 shows between the first and the last.
 TRAVEL_KNOTS = (0.0, 0.004, 0.008, 0.015, 0.022, 0.03, 0.04, 0.055, 0.075, 0.1, 0.15)
+# Where what was not seen is missed by more than twice what was fitted, the model is too large for so few strokes; that
+# says nothing of the noise.
+LARGEST_RATIO = 2.0
 # Far below one sample's weight.
 RIDGE = 1e-6
 
@@ -152,7 +155,8 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
         per_stroke = losses / np.maximum(blocks.samples, 1)
         seen = blocks.samples > 0
         trained = loss(blocks.gram[seen], fitted) / blocks.samples[seen]
-        unseen = max(inside, inside * float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300))))
+        ratio = float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300)))
+        unseen = inside * min(max(ratio, 1.0), LARGEST_RATIO**2)
     moving = np.sqrt((inside + unseen) / 2.0)
     return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit)
 

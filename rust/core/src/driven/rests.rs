@@ -4,14 +4,18 @@
 //! smoothed until it does not would move before the mechanism does. Between two turning points the motion goes one way
 //! only; where it starts is read from the two instants at which it has left its rest for certain.
 
+use super::start::{Passage, Start, gentleness};
 use super::strokes::Turn;
 
 /// A position is off its level for certain once it is this many standard deviations of the noise away: of the thousand
 /// samples of a rest none is, in nine records of ten.
 pub const CERTAIN: f64 = 4.0;
 
-/// From rest, constant acceleration takes twice as long to four times the travel.
+/// How a start is drawn back is read off this many times the travel that is certain.
 const FAR: f64 = 4.0;
+
+/// The travels, in multiples of what is certain, that tell as which power of time motions start.
+const TRAVELS: [f64; 6] = [1.0, 2.0, 4.0, 6.0, 9.0, 13.0];
 
 /// The noise of a position, its standard deviation, from what a low pass takes off; robust against the corners that it
 /// takes off as well.
@@ -37,27 +41,34 @@ pub fn held(position: &[f64], smooth: &[f64], turns: &[Turn], certain: f64) -> V
     let (Some(first), Some(last)) = (turns.first(), turns.last()) else {
         return quiet;
     };
-    let level = |turn: &Turn| rest_level(position, smooth[turn.sample], turn.sample, certain);
-    let mut from = level(first);
-    quiet[..=first.sample].fill(from);
+    let levels: Vec<f64> = turns
+        .iter()
+        .map(|turn| rest_level(position, smooth[turn.sample], turn.sample, certain))
+        .collect();
+    let ways: Vec<Way> = turns
+        .windows(2)
+        .zip(levels.windows(2))
+        .map(|(pair, level)| Way {
+            samples: &position[pair[0].sample..=pair[1].sample],
+            from: level[0],
+            direction: (level[1] - level[0]).signum(),
+            certain,
+        })
+        .collect();
+    let power = gentleness(&ways.iter().map(Way::start).collect::<Vec<_>>());
+    // The travel that is certain takes this many times what lies between it and the far one.
+    let lead = 1.0 / (FAR.powf(1.0 / power) - 1.0);
+    quiet[..=first.sample].fill(levels[0]);
     let mut rests_since = 0;
-    for pair in turns.windows(2) {
-        let (start, end) = (pair[0].sample, pair[1].sample);
-        let to = level(&pair[1]);
-        let direction = (to - from).signum();
-        let gone = |i: usize| (position[i] - from) * direction;
-        let passes = |travel: f64| {
-            let beyond = (start..=end).find(|i| gone(*i) > travel).unwrap_or(end);
-            // Under way for certain: from there on nothing falls back below.
-            let under_way = (beyond..=end)
-                .find(|i| gone(*i) > travel + 2.0 * certain)
-                .unwrap_or(end);
-            let below = (start..=under_way).rev().find(|i| gone(*i) <= travel);
-            // Noise passes early as often as late.
-            usize::midpoint(beyond, below.unwrap_or(start).max(start))
-        };
-        let (left, well) = (passes(certain), passes(FAR * certain));
-        let begin = left.saturating_sub(well - left).max(rests_since).min(left);
+    for (k, way) in ways.iter().enumerate() {
+        let (start, end) = (turns[k].sample, turns[k + 1].sample);
+        let (from, to, direction) = (way.from, levels[k + 1], way.direction);
+        let (left, well) = (
+            start + way.passes(certain),
+            start + way.passes(FAR * certain),
+        );
+        let ahead = (lead * (well - left) as f64).round() as usize;
+        let begin = left.saturating_sub(ahead).max(rests_since).min(left);
         quiet[rests_since..=begin].fill(from);
         for (i, y) in quiet.iter_mut().enumerate().take(left + 1).skip(begin) {
             let share = if left > begin {
@@ -65,7 +76,7 @@ pub fn held(position: &[f64], smooth: &[f64], turns: &[Turn], certain: f64) -> V
             } else {
                 0.0
             };
-            *y = from + direction * certain * share * share;
+            *y = from + direction * certain * share.powf(power);
         }
         let mut furthest = quiet[left];
         rests_since = end;
@@ -81,16 +92,50 @@ pub fn held(position: &[f64], smooth: &[f64], turns: &[Turn], certain: f64) -> V
             quiet[i] = furthest;
         }
         quiet[end] = to;
-        from = to;
     }
     let rest = &mut quiet[last.sample..];
     // After the last turning point nothing moves by more than the hysteresis; what is no noise is followed.
-    let mut level = from;
+    let mut level = levels[levels.len() - 1];
     for y in rest {
         level += crate::projections::luz(*y - level, certain);
         *y = level;
     }
     quiet
+}
+
+/// The samples between two turning points, and what is certain of them.
+struct Way<'a> {
+    samples: &'a [f64],
+    from: f64,
+    direction: f64,
+    certain: f64,
+}
+
+impl Way<'_> {
+    /// The sample at which a travel is passed: half-way between the first beyond it and the last not yet.
+    fn passes(&self, travel: f64) -> usize {
+        let end = self.samples.len() - 1;
+        let gone = |i: usize| (self.samples[i] - self.from) * self.direction;
+        let beyond = (0..=end).find(|i| gone(*i) > travel).unwrap_or(end);
+        // Under way for certain: from there on nothing falls back below.
+        let under_way = (beyond..=end)
+            .find(|i| gone(*i) > travel + 2.0 * self.certain)
+            .unwrap_or(end);
+        let below = (0..=under_way).rev().find(|i| gone(*i) <= travel);
+        // Noise passes early as often as late.
+        usize::midpoint(beyond, below.unwrap_or(0))
+    }
+
+    /// The travels that tell how the motion starts, and when they were passed.
+    fn start(&self) -> Start {
+        TRAVELS
+            .iter()
+            .map(|times| Passage {
+                travel: times * self.certain,
+                time: self.passes(times * self.certain) as f64,
+            })
+            .collect()
+    }
 }
 
 /// The mean of the samples next to a turning point that do not differ from it for certain.

@@ -22,7 +22,7 @@ impl Law for Stiction {
             symbol: "F_S - F_K",
             meaning: "static friction above the Coulomb level",
             role: Role::Linear,
-            low: f64::NEG_INFINITY,
+            low: 0.0,
             high: f64::INFINITY,
         }],
         becomes: None,
