@@ -75,6 +75,82 @@ class Trajectory:
     __repr__ = __str__
 
 
+@dataclass(frozen=True)
+class Event:
+    """One event of a trajectory.
+
+    Attributes
+    ----------
+    time_s : float
+    kind : str
+        ``stick``, ``slip``, ``reversal``, ``contact`` or ``release`` (of the gap).
+    direction : int
+        Of the motion that follows, or the side that touches; 0 where the body stays.
+    """
+
+    time_s: float
+    kind: str
+    direction: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the event as plain JSON values."""
+        return {"time_s": self.time_s, "kind": self.kind, "direction": self.direction}
+
+
+@dataclass(frozen=True)
+class Trace(Trajectory):
+    """What :func:`trace` returns: a trajectory with its events and energies.
+
+    Attributes
+    ----------
+    handwheel_rad : ndarray, shape (n,)
+    events : tuple of Event
+    energy_j : mapping of str to float
+        ``handwheel`` and ``load`` (work put in), ``stored_first``, ``stored_last``, ``dry``, ``viscous``, ``curved``
+        (heat; curved is drag and one-sided viscous friction), ``turnover`` and ``residual``.
+    """
+
+    handwheel_rad: np.ndarray
+    events: tuple[Event, ...]
+    energy_j: Mapping[str, float]
+
+    @property
+    def balanced(self) -> bool:
+        """Whether the energy that the numbers do not account for is below a hundredth of what was turned over."""
+        return abs(self.energy_j["residual"]) <= LARGEST_RESIDUAL * self.energy_j["turnover"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the trace as plain JSON values."""
+        return {
+            **super().to_dict(),
+            "handwheel_rad": self.handwheel_rad.tolist(),
+            "events": [e.to_dict() for e in self.events],
+            "energy_j": dict(self.energy_j),
+            "balanced": self.balanced,
+        }
+
+    def __str__(self) -> str:
+        counts = {kind: sum(e.kind == kind for e in self.events) for kind in EVENT_KINDS}
+        told = ", ".join(f"{n} {kind}" for kind, n in counts.items() if n) or "none"
+        e = self.energy_j
+        lines = [
+            super().__str__(),
+            f"events: {told}",
+            f"energy: handwheel {e['handwheel']:.4g} J, load {e['load']:.4g} J; dry {e['dry']:.4g} J, viscous "
+            f"{e['viscous']:.4g} J, other {e['curved']:.4g} J; residual {e['residual']:.2g} J",
+        ]
+        if not self.balanced:
+            lines.append("The energy does not add up: take more substeps.")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+EVENT_KINDS = ("stick", "slip", "reversal", "contact", "release")
+# Of the energy turned over; the residual is of second order in the step, so that a step a third as long has a tenth.
+LARGEST_RESIDUAL = 0.01
+
+
 def table(parameters: Mapping[str, Any]) -> tuple[np.ndarray, bool]:
     """Return parameters as rows of the core's columns, and whether they are many.
 
@@ -192,3 +268,44 @@ def simulate(
     )
     time_s = np.arange(psi.size) / rate
     return Trajectory(time_s, phi, speed) if many else Trajectory(time_s, phi[0], speed[0])
+
+
+def trace(
+    parameters: Mapping[str, float],
+    handwheel_rad: Any,
+    *,
+    sample_rate_hz: float,
+    load_nm: Any = None,
+    start_rad: float = 0.0,
+    start_speed_rad_s: float = 0.0,
+    substeps: int = 1,
+    method: str = "split",
+) -> Trace:
+    """Run one mechanism and keep what happened: every event with its instant, and where the energy went.
+
+    Parameters are those of :func:`simulate`, one value each; the samples have the same bits.
+
+    Raises
+    ------
+    ParameterError
+        As :func:`simulate`.
+    """
+    rows, many = table(parameters)
+    if many:
+        raise ParameterError("there are several lanes", "parameters", "Give one value each, or call simulate.")
+    psi = vector("handwheel_rad", handwheel_rad, minimum=2)
+    load = None if load_nm is None else vector("load_nm", load_nm)
+    rate = number("sample_rate_hz", sample_rate_hz)
+    start = (number("start_rad", start_rad), number("start_speed_rad_s", start_speed_rad_s))
+    steps = whole_number("substeps", substeps, 1, 1_000_000)
+    phi, speed, events, energies = _core.trace_steering(
+        rows, start, psi, load, sample_rate_hz=rate, substeps=steps, method=method
+    )
+    return Trace(
+        time_s=np.arange(psi.size) / rate,
+        roadwheel_rad=phi,
+        speed_rad_s=speed,
+        handwheel_rad=psi,
+        events=tuple(Event(t, kind, int(direction)) for t, kind, direction in events),
+        energy_j=MappingProxyType(dict(energies)),
+    )

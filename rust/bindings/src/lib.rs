@@ -5,6 +5,7 @@ mod driven;
 mod dynamics;
 mod effects;
 mod error;
+mod projections;
 mod regression;
 mod signal;
 mod stats;
@@ -18,9 +19,11 @@ mod _core {
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
-    use crate::dynamics::{simulate_steering, steering_parameters};
+    use crate::dynamics::{simulate_steering, steering_parameters, trace_steering};
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::projections::project;
     #[pymodule_export]
     use crate::regression::{LineSums, fit_line};
     #[pymodule_export]

@@ -46,10 +46,24 @@ pub enum Width {
     Avx512,
 }
 
-/// Lanes of a block: their states stay in the first-level cache.
-const BLOCK: usize = 64;
-/// Few lanes, as in a fit of few parameters, take small blocks, so that none runs empty.
-const SMALL_BLOCK: usize = 8;
+/// Lanes of a block where there are many: their states stay in the first-level cache.
+const LARGE: usize = 64;
+/// Smaller ones keep every thread busy where there are few: four vectors of the widest kind, or one.
+const MEDIUM: usize = 32;
+/// See [`MEDIUM`].
+const SMALL: usize = 8;
+
+/// The block that gives every thread something to do and no lane too many.
+fn block_for(lanes: usize) -> usize {
+    let threads = rayon::current_num_threads();
+    if lanes <= SMALL * threads {
+        SMALL
+    } else if lanes <= 2 * MEDIUM * threads {
+        MEDIUM
+    } else {
+        LARGE
+    }
+}
 
 /// What to simulate.
 #[derive(Debug, Clone, Copy)]
@@ -95,11 +109,7 @@ pub fn simulate(
     if !speed.is_empty() {
         length("speed", speed.len(), lanes * samples)?;
     }
-    let block = if lanes <= SMALL_BLOCK {
-        SMALL_BLOCK
-    } else {
-        BLOCK
-    };
+    let block = block_for(lanes);
     let curved = batch.bodies.iter().any(OneMass::is_curved);
     let per_block = block * samples;
     // Without a place for the speeds every block gets an empty one.
@@ -114,33 +124,19 @@ pub fn simulate(
         .for_each(|(number, (phi, speed))| {
             let first = number * block;
             let last = (first + block).min(lanes);
-            let (bodies, starts) = (&batch.bodies[first..last], &batch.starts[first..last]);
-            if block == SMALL_BLOCK {
-                run(
-                    Task::<SMALL_BLOCK> {
-                        bodies,
-                        starts,
-                        drive,
-                        kernel: batch.kernel,
-                        curved,
-                        phi,
-                        speed,
-                    },
-                    batch.width,
-                );
-            } else {
-                run(
-                    Task::<BLOCK> {
-                        bodies,
-                        starts,
-                        drive,
-                        kernel: batch.kernel,
-                        curved,
-                        phi,
-                        speed,
-                    },
-                    batch.width,
-                );
+            let part = Part {
+                bodies: &batch.bodies[first..last],
+                starts: &batch.starts[first..last],
+                drive,
+                kernel: batch.kernel,
+                curved,
+                phi,
+                speed,
+            };
+            match block {
+                SMALL => run(Task::<SMALL>(part), batch.width),
+                MEDIUM => run(Task::<MEDIUM>(part), batch.width),
+                _ => run(Task::<LARGE>(part), batch.width),
             }
         });
     Ok(())
@@ -210,8 +206,8 @@ impl Advance for MoreauJean {
     }
 }
 
-/// One block of lanes.
-struct Task<'a, const N: usize> {
+/// What a block works on.
+struct Part<'a> {
     bodies: &'a [OneMass<f64>],
     starts: &'a [Start],
     drive: &'a Drive,
@@ -220,6 +216,9 @@ struct Task<'a, const N: usize> {
     phi: &'a mut [f64],
     speed: &'a mut [f64],
 }
+
+/// One block of `N` lanes.
+struct Task<'a, const N: usize>(Part<'a>);
 
 /// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
 fn run<const N: usize>(task: Task<'_, N>, width: Width) {
@@ -246,7 +245,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.kernel, self.curved) {
+        match (self.0.kernel, self.0.curved) {
             (Kernel::Split, false) => self.along::<Split<false>>(),
             (Kernel::Split, true) => self.along::<Split<true>>(),
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
@@ -257,34 +256,35 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 impl<const N: usize> Task<'_, N> {
     #[inline(always)]
     fn along<A: Advance>(self) {
-        let last = self.bodies.len() - 1;
+        let part = self.0;
+        let last = part.bodies.len() - 1;
         // Lanes beyond the last repeat it, so that every block is full.
         let mut table = [[0.0; N]; PARAMETERS];
         let (mut phi, mut v) = ([0.0; N], [0.0; N]);
         for lane in 0..N {
             let of = lane.min(last);
-            for (row, value) in table.iter_mut().zip(self.bodies[of].to_array()) {
+            for (row, value) in table.iter_mut().zip(part.bodies[of].to_array()) {
                 row[lane] = value;
             }
-            phi[lane] = self.starts[of].phi;
-            v[lane] = self.starts[of].speed;
+            phi[lane] = part.starts[of].phi;
+            v[lane] = part.starts[of].speed;
         }
-        let samples = self.drive.samples();
-        let h = Pure(self.drive.step_s());
+        let samples = part.drive.samples();
+        let h = Pure(part.drive.step_s());
         for sample in 0..samples {
             for lane in 0..=last {
-                self.phi[lane * samples + sample] = phi[lane];
+                part.phi[lane * samples + sample] = phi[lane];
             }
-            if !self.speed.is_empty() {
+            if !part.speed.is_empty() {
                 for lane in 0..=last {
-                    self.speed[lane * samples + sample] = v[lane];
+                    part.speed[lane * samples + sample] = v[lane];
                 }
             }
             if sample + 1 == samples {
                 break;
             }
-            for sub in 0..self.drive.substeps() {
-                let span = self.drive.span(sample * self.drive.substeps() + sub);
+            for sub in 0..part.drive.substeps() {
+                let span = part.drive.span(sample * part.drive.substeps() + sub);
                 for lane in 0..N {
                     let body = OneMass::gather(&table, lane);
                     let next = A::step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));

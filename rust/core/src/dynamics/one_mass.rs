@@ -224,17 +224,48 @@ impl OneMass<Pure> {
 
     /// The torque that springs and load put on the body.
     #[inline(always)]
+    #[must_use]
     pub fn torque(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
-        let wound = luz(psi - self.ratio * phi, self.gap * Pure(0.5));
-        let at_spring = motion(wound, Pure::ZERO, Pure::ZERO);
         let at_wheel = motion(phi, Pure::ZERO, Pure::ZERO);
-        let spring = self.stiffness * one::<Stiffness>(&at_spring, 0.0)
-            + self.hardening * one::<Hardening>(&at_spring, 0.0);
-        self.ratio * spring - self.aligning * one::<Stiffness>(&at_wheel, 0.0) + load
+        self.ratio * self.at_handwheel(psi, phi) - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
+            + load
+    }
+
+    /// The torque that the spring asks of the handwheel.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_handwheel(&self, psi: Pure, phi: Pure) -> Pure {
+        let wound = motion(self.wound(psi, phi), Pure::ZERO, Pure::ZERO);
+        self.stiffness * one::<Stiffness>(&wound, 0.0)
+            + self.hardening * one::<Hardening>(&wound, 0.0)
+    }
+
+    /// How far the spring at the handwheel is wound up, its gap taken off.
+    #[inline(always)]
+    fn wound(&self, psi: Pure, phi: Pure) -> Pure {
+        luz(psi - self.ratio * phi, self.gap * Pure(0.5))
+    }
+
+    /// Energy of motion and springs.
+    #[must_use]
+    pub fn stored(&self, psi: Pure, phi: Pure, v: Pure) -> Pure {
+        let wound = self.wound(psi, phi);
+        let square = wound * wound;
+        Pure(0.5) * (self.inertia * v * v + self.stiffness * square + self.aligning * phi * phi)
+            + Pure(0.25) * self.hardening * square * square
+    }
+
+    /// Stribeck's part of dry friction.
+    #[inline(always)]
+    #[must_use]
+    pub fn stribeck_torque(&self, speed: Pure, direction: Pure) -> Pure {
+        let moving = motion(Pure::ZERO, speed, direction);
+        direction * self.stribeck * one::<Stribeck>(&moving, self.stribeck_speed.0)
     }
 
     /// Dry friction while moving in a direction, without Stribeck's part.
     #[inline(always)]
+    #[must_use]
     pub fn kinetic(&self, direction: Pure) -> Pure {
         let moving = motion(Pure::ZERO, Pure::ZERO, direction);
         direction
@@ -243,21 +274,24 @@ impl OneMass<Pure> {
 
     /// The largest torque on either side that friction holds at rest.
     #[inline(always)]
+    #[must_use]
     pub fn held(&self, direction: Pure) -> Pure {
         self.coulomb + direction * self.asymmetric_coulomb + self.stribeck + self.stiction
     }
 
     /// The torque of what depends on the speed in a curved way: Stribeck's part, drag, one-sided viscous friction.
     #[inline(always)]
+    #[must_use]
     pub fn curved(&self, speed: Pure, direction: Pure) -> Pure {
         let moving = motion(Pure::ZERO, speed, direction);
-        direction * self.stribeck * one::<Stribeck>(&moving, self.stribeck_speed.0)
+        self.stribeck_torque(speed, direction)
             + self.asymmetric_viscous * one::<AsymmetricViscous>(&moving, 0.0)
             + self.drag * one::<Drag>(&moving, 0.0)
     }
 
     /// The viscous torque.
     #[inline(always)]
+    #[must_use]
     pub fn linear(&self, speed: Pure) -> Pure {
         self.viscous * one::<Viscous>(&motion(Pure::ZERO, speed, Pure::ZERO), 0.0)
     }
