@@ -1,7 +1,7 @@
 """luz and tar and the operators made of them, over arrays.
 
-``luz(x, a) = x - clip(x, -a, a)`` is freeplay; its inverse tar is dry friction; one implicit step of dry friction is luz
-again. With a memory they become play (backlash) and stop (friction before break-away).
+``luz(x, a) = x - clip(x, -a, a)`` is freeplay; its inverse tar is dry friction; one implicit step of dry friction is
+luz again. With a memory they become play (backlash) and stop (friction before break-away).
 
 Source: Wieckowski, Zardecki, "Influence of freeplay and friction in steering system on double lane change manoeuvre",
 equations (1) to (4).

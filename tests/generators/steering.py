@@ -13,6 +13,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 
+# A body at rest is looked at this often: a hand of 1.5 Hz winds no spring up and lets it go again in between.
+SCANS_PER_S = 500
+# A thousandth of the noise that is added to a run.
+RUN_TOLERANCE = 1e-6
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Parameters as the paper names them: road-wheel side, the column's at the handwheel."""
@@ -85,7 +91,7 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
         inside = times >= t
         if mode == 0:
             # Stuck: the angle stays; the torque is scanned for the instant at which it is too much.
-            grid = np.linspace(t, end, max(2, int((end - t) * 4000) + 1))
+            grid = np.linspace(t, end, max(2, int((end - t) * SCANS_PER_S) + 1))
             torque = np.array([m.spring(float(hand(x)), phi) for x in grid])
             lost = np.array([not m.holds(q) for q in torque])
             if not lost.any():
@@ -151,7 +157,7 @@ def steering_run(
     """Return time, handwheel and road wheel of one run, the road wheel with white noise."""
     times = np.arange(round(seconds * rate_hz)) / rate_hz
     hand = drawn_hand(chance)
-    phi = simulate(m, hand, times)
+    phi = simulate(m, hand, times, tolerance=RUN_TOLERANCE)
     return {
         "time": times,
         "handwheel": np.asarray(hand(times)),

@@ -43,7 +43,9 @@ def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
     fast = float(np.quantile(np.abs(speeds), 0.95)) * gain
     fast = max(fast, 1e-9)
     reach = float(np.quantile(np.abs(psi), 0.95))
-    torque = ratio * stiffness * reach * (1.0 - ratio * gain) if ratio * gain < 0.99 else 0.01 * ratio * stiffness * reach
+    torque = (
+        ratio * stiffness * reach * (1.0 - ratio * gain) if ratio * gain < 0.99 else 0.01 * ratio * stiffness * reach
+    )
     wound = torque / (ratio * stiffness)
     friction = 0.3 * torque
     return {
