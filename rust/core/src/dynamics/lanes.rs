@@ -13,6 +13,7 @@ use crate::Error;
 use super::drive::{Drive, Span};
 use super::number::Pure;
 use super::one_mass::{OneMass, PARAMETERS};
+use super::split::Pace;
 use super::{moreau, split};
 
 /// How a step is made.
@@ -185,15 +186,15 @@ pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
 /// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
 /// code for the instruction set.
 trait Advance {
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step;
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
 }
 
 struct Split<const CURVED: bool>;
 
 impl<const CURVED: bool> Advance for Split<CURVED> {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
-        split::step::<CURVED>(body, span, h, phi, v)
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
+        split::step::<CURVED>(body, span, pace, phi, v)
     }
 }
 
@@ -201,8 +202,8 @@ struct MoreauJean;
 
 impl Advance for MoreauJean {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
-        moreau::step(body, span, h, phi, v)
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
+        moreau::step(body, span, pace, phi, v)
     }
 }
 
@@ -271,6 +272,13 @@ impl<const N: usize> Task<'_, N> {
         }
         let samples = part.drive.samples();
         let h = Pure(part.drive.step_s());
+        let (mut rate, mut kept, mut damped) = ([0.0; N], [0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let pace = Pace::of(&OneMass::gather(&table, lane), h);
+            rate[lane] = pace.rate.0;
+            kept[lane] = pace.kept.0;
+            damped[lane] = pace.damped.0;
+        }
         for sample in 0..samples {
             for lane in 0..=last {
                 part.phi[lane * samples + sample] = phi[lane];
@@ -287,7 +295,13 @@ impl<const N: usize> Task<'_, N> {
                 let span = part.drive.span(sample * part.drive.substeps() + sub);
                 for lane in 0..N {
                     let body = OneMass::gather(&table, lane);
-                    let next = A::step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));
+                    let pace = Pace {
+                        h,
+                        rate: Pure(rate[lane]),
+                        kept: Pure(kept[lane]),
+                        damped: Pure(damped[lane]),
+                    };
+                    let next = A::step(&body, &span, pace, Pure(phi[lane]), Pure(v[lane]));
                     phi[lane] = next.phi.0;
                     v[lane] = next.speed.0;
                 }

@@ -6,12 +6,12 @@
 use super::drive::Span;
 use super::number::Pure;
 use super::one_mass::OneMass;
-use super::split::Step;
+use super::split::{Pace, Step};
 
 /// One sub-step of length `h`.
 #[inline(always)]
-pub(super) fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> Step {
-    let rate = h / body.inertia;
+pub(super) fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
+    let Pace { h, rate, .. } = pace;
     let (psi, load) = span.end();
     let torque = body.torque(psi, load, phi);
     let s = v.sign();

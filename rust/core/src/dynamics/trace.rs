@@ -44,6 +44,7 @@ pub fn trace(
     let body = body.pure();
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
     let h = drive.step_s();
+    let pace = split::Pace::of(&body, Pure(h));
     let samples = drive.samples();
     let mut out = Trace {
         phi: Vec::with_capacity(samples),
@@ -65,9 +66,9 @@ pub fn trace(
             let span = drive.span(number);
             let time_s = number as f64 * h;
             let step = match (kernel, curved) {
-                (Kernel::MoreauJean, _) => moreau::step(&body, &span, Pure(h), phi, v),
-                (Kernel::Split, false) => split::step::<false>(&body, &span, Pure(h), phi, v),
-                (Kernel::Split, true) => split::step::<true>(&body, &span, Pure(h), phi, v),
+                (Kernel::MoreauJean, _) => moreau::step(&body, &span, pace, phi, v),
+                (Kernel::Split, false) => split::step::<false>(&body, &span, pace, phi, v),
+                (Kernel::Split, true) => split::step::<true>(&body, &span, pace, phi, v),
             };
             friction_events(&mut out.events, time_s, h, v, &step);
             if body.gap.0 > 0.0 {
