@@ -51,9 +51,9 @@ def test_the_asymmetric_model_reaches_the_published_error(train, pulses):
 
 def test_the_study_tells_the_authors_story_and_goes_on(train, pulses):
     study = luztar.study(luztar.Model.axis(), train, pulses)
-    # Janot and others: viscous friction that differs by direction, "mechanical fatigue of the screw". What follows halves
-    # the unseen error once more: the recorded command is ahead of the position by less than a sample, and the friction
-    # near standstill is not the one of the quick strokes.
+    # Janot and others: viscous friction that differs by direction, "mechanical fatigue of the screw". What follows
+    # halves the unseen error once more: the recorded command is ahead of the position by less than a sample, and the
+    # friction near standstill is not that of the quick strokes.
     assert study.named[0] == "asymmetric_viscous"
     assert set(study.named) == {"asymmetric_viscous", "lead", "stribeck"}
     assert not any(name.startswith("decoy") for s in study.steps for name in s.set)

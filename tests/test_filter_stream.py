@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -140,3 +141,55 @@ def test_unusable_output_arrays_are_refused() -> None:
 
 def test_filter_describes_itself() -> None:
     assert "4 poles forward" in repr(signal.Filter(poles=4, cutoff_hz=6, sample_rate_hz=1000))
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        lambda x: np.repeat(x, 2)[::2],
+        lambda x: x[::-1].copy()[::-1],
+        lambda x: x.astype(">f8"),
+        lambda x: x.astype(np.float32),
+        lambda x: x.astype(np.int64),
+        lambda x: x.tolist(),
+        lambda x: np.frombuffer(x.tobytes()),
+        lambda x: np.frombuffer(b"." + x.tobytes(), dtype=np.uint8)[1:].view(np.float64),
+    ],
+    ids=["strided", "reversed", "big_endian", "float32", "int64", "list", "read_only", "misaligned"],
+)
+def test_every_real_layout_gives_the_same_bits(form) -> None:
+    x = np.round(torque(200) * 50)  # whole numbers, exact in every type above
+    f, g, h = (signal.Filter(cutoff_hz=60, sample_rate_hz=1000) for _ in range(3))
+    expected = f.push(x)
+    np.testing.assert_array_equal(g.push(form(x)), expected)
+    out = np.empty(200)
+    h.push_into(form(x), out)
+    np.testing.assert_array_equal(out, expected)
+
+
+@pytest.mark.parametrize(
+    "chunk",
+    [3.0, [[1.0]], [1j], [object()], ["a"], [[1.0], [1.0, 2.0]], np.ma.array([1.0], mask=[1]), None, [np.nan], [1e200]],
+    ids=["scalar", "table", "complex", "object", "text", "ragged", "masked", "none", "nan", "huge"],
+)
+def test_what_cannot_be_pushed_is_refused(chunk) -> None:
+    f = signal.Filter(cutoff_hz=6, sample_rate_hz=1000)
+    with pytest.raises(ParameterError):
+        f.push(chunk)
+    with pytest.raises(ParameterError):
+        f.push_into(chunk, np.empty(1))
+    assert f.push([4.0]).tolist() == [4.0]
+
+
+def test_two_threads_on_two_filters_give_what_one_gives() -> None:
+    x = torque(200_000)
+    expected = signal.causal(x, cutoff_hz=6, sample_rate_hz=1000)
+    outs = [np.empty_like(x) for _ in range(2)]
+    filters = [signal.Filter(cutoff_hz=6, sample_rate_hz=1000) for _ in range(2)]
+    threads = [threading.Thread(target=f.push_into, args=(x, out)) for f, out in zip(filters, outs, strict=True)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for out in outs:
+        np.testing.assert_array_equal(out, expected)

@@ -26,10 +26,12 @@ MOST_LINES = 500
 LAZY = {"jinja2", "pandas", "plotly", "pydantic", "rich", "scipy", "typer"}
 
 # Who may import whom at the head of a module. `figure()` and `report()` of results reach upward inside functions.
-FOUNDATION = {"_arrays", "_core", "errors"}
+FOUNDATION = {"_arrays", "_core", "_printed", "_stream", "errors"}
 MAY_IMPORT = {
     "errors": set(),
     "_arrays": {"errors"},
+    "_stream": {"errors"},
+    "_printed": set(),
     "signal": FOUNDATION,
     "stats": FOUNDATION,
     "regression": FOUNDATION,

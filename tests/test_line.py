@@ -10,16 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import linregress
+from scipy.stats import t as student
 
+import exact_least_squares
 from luztar import regression
 from luztar.errors import ParameterError
-
-EPS = np.finfo(np.float64).eps
-
-
-def digits(found: float, certified: float) -> float:
-    """The log relative error: how many leading digits agree, 15.95 at most."""
-    return -math.log10(max(abs(found - certified) / abs(certified), EPS / 2))
+from nist_data import EPS, digits
+from nist_data import regression as regression_set
 
 
 def points(n: int, seed: int, offset: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -29,10 +26,8 @@ def points(n: int, seed: int, offset: float = 0.0) -> tuple[np.ndarray, np.ndarr
 
 
 def norris(nist) -> tuple[np.ndarray, np.ndarray]:
-    text = (nist / "Norris.dat").read_text().splitlines()
-    start = max(i for i, line in enumerate(text) if line.startswith("Data:"))
-    table = np.array([[float(v) for v in line.split()] for line in text[start + 1 :] if line.strip()])
-    return table[:, 1], table[:, 0]
+    data = regression_set(nist, "Norris")
+    return data.x[:, 0], data.y
 
 
 def test_norris_has_the_certified_line(nist) -> None:
@@ -61,6 +56,103 @@ def test_time_stamps_near_a_billion_seconds_keep_their_digits(nist) -> None:
     x, y = norris(nist)
     # 1e9 + x is rounded by 6e-8 in 1e3, spread over 36 points: ten digits are all the data still hold
     assert digits(regression.line(x + 1e9, y).slope, 1.00211681802045) >= 10
+
+
+def test_times_near_a_billion_seconds_give_the_exact_line(nist) -> None:
+    x, y = norris(nist)
+    exact, _ = exact_least_squares.polynomial(x + 1e9, y, 1)
+    assert digits(regression.line(x + 1e9, y).slope, exact[1]) >= 14
+
+
+def test_even_time_keeps_every_digit_at_a_billion_seconds() -> None:
+    y = np.random.default_rng(5).standard_normal(3000) + 0.25 * np.arange(3000)
+    near, far = regression.time_line(y, 1000.0), regression.time_line(y, 1000.0, start_s=1.7e9)
+    assert far.slope == near.slope and far.slope_se == near.slope_se
+    assert far.r == near.r and far.residual_std == near.residual_std
+    exact, _ = exact_least_squares.polynomial(np.arange(3000.0), y, 1)
+    assert digits(far.slope / 1000.0, exact[1]) >= 14
+    # half a second on, which the time stamp still holds exactly
+    assert far.predict([1.7e9 + 0.5])[0] == pytest.approx(near.predict([0.5])[0], rel=4 * EPS)
+    stream = regression.TimeLine(1000.0, start_s=1.7e9)
+    for start in range(0, 3000, 7):
+        stream.push(y[start : start + 7])
+    assert digits(stream.fit().slope, far.slope) >= 14
+
+
+@given(n=st.integers(3, 300), seed=st.integers(0, 99))
+def test_whole_weights_are_repeated_points(n: int, seed: int) -> None:
+    x, y = points(n, seed)
+    times = np.random.default_rng(seed).integers(0, 4, n)
+    times[:2] = 1
+    weighted = regression.line(x, y, weights=times)
+    repeated = regression.line(np.repeat(x, times), np.repeat(y, times))
+    rounding = 256 * EPS
+    assert weighted.slope == pytest.approx(repeated.slope, rel=rounding)
+    assert weighted.r == pytest.approx(repeated.r, rel=rounding)
+    assert weighted.x_mean == pytest.approx(repeated.x_mean, rel=rounding, abs=rounding)
+
+
+@given(seed=st.integers(0, 99), factor=st.floats(0.5, 1.0), chunk=st.integers(1, 700))
+def test_forgetting_is_a_weight_that_falls_with_age(seed: int, factor: float, chunk: int) -> None:
+    n = 1500
+    x, y = points(n, seed)
+    sums = regression.LineSums(forgetting=factor)
+    for start in range(0, n, chunk):
+        sums.push(x[start : start + chunk], y[start : start + chunk])
+    weights = factor ** np.arange(n - 1.0, -1.0, -1.0)
+    direct = regression.line(x, y, weights)
+    found = sums.fit()
+    # powers of the factor round once a step: n of them, on points that hardly count any more
+    assert found.slope == pytest.approx(direct.slope, rel=64 * EPS * n)
+    assert found.intercept == pytest.approx(direct.intercept, rel=64 * EPS * n)
+    assert found.degrees_of_freedom == pytest.approx(weights.sum() - 2, rel=4 * EPS * n, abs=4 * EPS * n)
+
+
+@given(seed=st.integers(0, 99), window=st.integers(2, 200), extra=st.integers(0, 500))
+def test_rolling_line_is_the_line_of_the_last_points(seed: int, window: int, extra: int) -> None:
+    x, y = points(window + extra, seed, 1e4)
+    # an outlier that has left the window must not be seen
+    y[: extra // 2] += 1e12
+    rolling = regression.RollingLine(window)
+    rolling.push(x, y)
+    found, direct = rolling.fit(), regression.line(x[-window:], y[-window:])
+    rounding = 64 * EPS * window
+    scale = abs(direct.slope) + np.abs(y[-window:] - direct.y_mean).max() / np.abs(x[-window:] - direct.x_mean).max()
+    assert found.slope == pytest.approx(direct.slope, rel=0, abs=rounding * scale)
+    assert found.n == window
+
+
+def test_intervals_are_those_of_student() -> None:
+    x, y = points(40, 3)
+    fit = regression.line(x, y)
+    half = student.ppf(0.975, 38) * fit.slope_se
+    assert fit.slope_interval() == pytest.approx((fit.slope - half, fit.slope + half), rel=1e-14)
+    low, high = fit.band(x)
+    assert np.all((low < fit.predict(x)) & (fit.predict(x) < high))
+    # at x = 0 the band is the intercept's interval
+    assert (fit.band([0.0])[0][0], fit.band([0.0])[1][0]) == pytest.approx(fit.intercept_interval(), rel=1e-13)
+    assert regression.line([0.0, 1.0], [1.0, 2.0]).slope_interval() is None
+    with pytest.raises(ParameterError, match="level"):
+        fit.slope_interval(95)
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
+    rng = np.random.default_rng(11)
+    x = np.linspace(-1, 1, 12)
+    hits = 0
+    for _ in range(2000):
+        low, high = regression.line(x, 3 * x + rng.standard_normal(12)).slope_interval(0.9)
+        hits += low <= 3 <= high
+    # binomial: three standard deviations of 2000 trials at 0.9
+    assert abs(hits / 2000 - 0.9) < 3 * math.sqrt(0.9 * 0.1 / 2000)
+
+
+def test_residuals_have_no_mean_and_the_stated_spread() -> None:
+    x, y = points(200, 9)
+    fit = regression.line(x, y)
+    residuals = fit.residuals(x, y)
+    assert abs(residuals.mean()) < 64 * EPS
+    assert math.sqrt(residuals @ residuals / 198) == pytest.approx(fit.residual_std, rel=1e-13)
 
 
 @given(n=st.integers(3, 2000), seed=st.integers(0, 999), offset=st.floats(-100, 100))

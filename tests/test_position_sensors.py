@@ -5,6 +5,7 @@ import pytest
 
 import luztar
 from generators.rig import simulate_rig_set
+from luztar.diagnosis.prepare import prepare
 
 # What stands between the true angle and the record; the noises are standard deviations.
 SENSORS = {
@@ -52,3 +53,9 @@ def test_a_gap_is_found_behind_a_noisy_sensor():
     assert found.named == ("freeplay",)
     # A start is certain after 0.2 degrees of such noise taken down by the low pass: a tenth of the gap.
     assert found.steps[-1].fit.parameters["freeplay.gap_rad"].value == pytest.approx(gap_rad, rel=0.1)
+
+
+def test_an_exact_angle_resolves_a_ten_thousandth_of_the_range():
+    # The quick corners of the first of these runs leave more behind the smoothing than the others do.
+    for run in prepare(recorded("exact", {}, seed=7), luztar.Model.rig()):
+        assert run.recording.resolution == pytest.approx(1e-4 * run.recording.range, rel=1e-3)

@@ -27,7 +27,7 @@ def test_the_transform_is_the_plain_sum(samples, step_s, longest_s, seed):
 def test_a_disturbance_of_its_own_frequency_ends_unexplained():
     hidden = {"time_sine": {"amplitude_nm": 0.1, "frequency_hz": 1.1, "phase_rad": 0.4}}
     made = simulate_rig_set(hidden, runs=3, seed=3, duration_s=30.0)
-    runs = [luztar.Run(time=r.time_s, angle=r.angle_rad, torque=r.torque_nm, name=f"run{i}") for i, r in enumerate(made)]
+    runs = [luztar.Run(time=r.time_s, angle=r.angle_rad, torque=r.torque_nm, name=f"r{i}") for i, r in enumerate(made)]
     found = luztar.study(luztar.Model.rig(), runs)
     assert found.verdict == "unexplained" and found.named == ()
     assert found.last.detection.along == "spectrum"

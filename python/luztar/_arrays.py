@@ -36,11 +36,44 @@ def vector(name: str, values: Any, *, minimum: int = 1, finite: bool = True) -> 
         raise ParameterError(f"{name} holds {array.size} values", name, f"Give at least {minimum}.")
     array = np.require(array, np.float64, ["C", "A"])
     if finite:
-        _refuse_not_finite(name, array)
+        refuse_not_finite(name, array)
     return array
 
 
-def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int, ...]]:
+def integers(name: str, values: Any) -> np.ndarray:
+    """Return ``values`` as a contiguous int32 vector.
+
+    Raises
+    ------
+    ParameterError
+        Not whole numbers (floats are not, whatever their value), not one-dimensional, or beyond 32 bits.
+    """
+    array = _real(name, values)
+    if array.ndim != 1 or (array.dtype.kind not in "iu" and array.size):
+        raise ParameterError(f"{name} is {array.dtype} of the shape {array.shape}", name, "Give whole numbers.")
+    if array.size and not (-(2**31) <= int(array.min()) and int(array.max()) < 2**31):
+        raise ParameterError(f"{name} holds values beyond 32 bits", name, "Use a QuantileSketch.")
+    return np.require(array, np.int32, ["C", "A"])
+
+
+def rows(name: str, values: Any, columns: int | None = None) -> np.ndarray:
+    """Return ``values`` as contiguous float64 rows; a vector is one column. Whether they are finite is not looked at.
+
+    Raises
+    ------
+    ParameterError
+        Not real, not of two dimensions, or of another number of columns.
+    """
+    array = _real(name, values)
+    if array.ndim == 1 and columns in (None, 1):
+        array = array[:, np.newaxis]
+    if array.ndim != 2 or (columns is not None and array.shape[1] != columns):
+        wanted = "p" if columns is None else columns
+        raise ParameterError(f"{name} has the shape {array.shape}", name, f"Give rows of the shape (n, {wanted}).")
+    return np.require(array, np.float64, ["C", "A"])
+
+
+def rows_along(name: str, values: Any, axis: int, *, finite: bool = True) -> tuple[np.ndarray, tuple[int, ...]]:
     """Return ``values`` as contiguous float64 rows, one per record along ``axis``, and the shape with ``axis`` last.
 
     Raises
@@ -52,7 +85,8 @@ def rows_along(name: str, values: Any, axis: int) -> tuple[np.ndarray, tuple[int
     if array.ndim == 0 or array.size == 0:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give at least one sample.")
     axis = whole_number("axis", axis, -array.ndim, array.ndim - 1)
-    _refuse_not_finite(name, array)
+    if finite:
+        refuse_not_finite(name, array)
     array = np.moveaxis(array, axis, -1)
     rows = np.require(array, np.float64, ["C", "A"]).reshape(-1, array.shape[-1])
     return rows, array.shape
@@ -113,7 +147,22 @@ def _real(name: str, values: Any) -> np.ndarray:
     return array
 
 
-def _refuse_not_finite(name: str, array: np.ndarray) -> None:
+def is_plain(values: Any) -> bool:
+    """Return whether ``values`` is a contiguous, aligned vector of doubles that can be used as it lies."""
+    if type(values) is not np.ndarray or values.dtype != np.float64 or values.ndim != 1:
+        return False
+    flags = values.flags
+    return flags.c_contiguous and flags.aligned and values.dtype.isnative
+
+
+def refuse_not_finite(name: str, array: np.ndarray) -> None:
+    """Refuse NaN and infinities.
+
+    Raises
+    ------
+    ParameterError
+        Names the first ten positions.
+    """
     good = np.isfinite(array)
     if good.all():
         return

@@ -54,7 +54,6 @@ RIG: dict[str, Typical] = {
     "tight_spot": Typical({"extra_nm": 0.35}, {"width_rad": 0.1}, {"angle_rad": (-0.6, 0.6)}),
     "load": Typical({"coefficient": 0.05}),  # Nm per N with a load of 2 to 10 N
     "delay": Typical({"time_s": 0.04}),
-    "lead": Typical({"time_s": 0.015}),
     "warmup": Typical({"extra_nm": 0.35}, {"time_s": 12.0}),
     "drift": Typical({"rate_nm_per_s": 0.018}, either_sign=True),
     "dwell": Typical({"extra_nm": 0.4}, {"time_s": 0.4}),
@@ -136,5 +135,5 @@ def needs(effect: str | None) -> dict[str, object]:
     return {}
 
 
-assert set(RIG) | {"coulomb", "viscous"} == set(CATALOGUE)
+assert set(RIG) | {"coulomb", "viscous", "lead"} == set(CATALOGUE)  # a lead is looked for on an axis only
 assert set(RIG_OUTSIDE) == set(OUTSIDE)

@@ -34,6 +34,7 @@ def card_text(card: Card) -> str:
         ("law", card.equation),
         ("kind", card.kind),
         ("needs", card.needs),
+        ("tried on", ", ".join(card.structures)),
         ("looks like", card.look),
         ("typical", card.typical),
         ("cause", card.cause),

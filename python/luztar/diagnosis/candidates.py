@@ -24,6 +24,11 @@ from .terms import inner_grid
 SET_ERRORS = 2.0
 # A gain that no engineer would act on is none: 1 % of the held-out error (rms).
 PRACTICAL_GAIN = 0.01
+# A law is an idealisation: of the sum of squares that it takes off it may leave this share in a shape of its own. A
+# gap of 2 degrees leaves half of it.
+LAW_ACCURACY = 0.01
+# What a law leaves has no shape of the catalogue: an effect that takes this share of the rest is more than that.
+MUCH_OF_THE_REST = 0.2
 # Candidates whose loss on the coarse grid is within this factor of the best are refined before they are compared.
 REFINED_WITHIN = 1.6
 BENT_WITHIN = 6.0
@@ -61,6 +66,8 @@ def possible(fitted: Fit) -> list[Card]:
     model = fitted.model
     found = []
     for c in cards(model.structure_name):
+        if not c.is_searched_on(model.structure_name):
+            continue
         if c.name in model.effects or (c.needs and c.needs not in model.effects):
             continue
         if c.channel and any(not r.has_load for r in fitted.runs):
@@ -157,6 +164,20 @@ def gain(base: Search, better: Search) -> tuple[float, float]:
     total, error = paired_error(base.losses, better.losses)
     left = better.held_out_loss / max(base.held_out_loss, np.finfo(float).tiny)
     return 1.0 - float(np.sqrt(max(left, 0.0))), total / max(error, np.finfo(float).tiny)
+
+
+def beyond_the_law(base: Search, better: Search, explained: float) -> bool:
+    """Whether a candidate takes off more than the laws that are in the model already may have left of their own part.
+
+    Parameters
+    ----------
+    base, better : Search
+        Without and with the candidate.
+    explained : float
+        The held-out sum of squares that the effects added before have taken off.
+    """
+    fall = base.held_out_loss - better.held_out_loss
+    return fall >= LAW_ACCURACY * explained or fall >= MUCH_OF_THE_REST * base.held_out_loss
 
 
 def equivalent(found: Sequence[Candidate]) -> list[Candidate]:

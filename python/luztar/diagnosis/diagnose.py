@@ -13,13 +13,13 @@ from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
 from .detect import detection
 from .experiment import Experiment, next_experiment
-from .fit import Fit, predict, predict_folds
+from .fit import Fit, predict
 from .given import given_fit
 from .intervals import Estimate
 from .misfit import rms, usable
 from .prepare import Prepared
 from .score import Detection
-from .verdict import Judgement, folded, judge
+from .verdict import Judgement, folded, judge, shown_rms
 from .where import Map, Regime, regimes, residual_map
 
 
@@ -165,13 +165,16 @@ class Diagnosis:
         return candidates(self)
 
 
-def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None) -> Diagnosis:
+def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, int], None] | None = None) -> Diagnosis:
     """Look once at a fitted model: test whether something is missing and try every effect of the catalogue.
 
     Parameters
     ----------
     fitted : Fit
         From ``luztar.fit``. Held-out runs given there are only predicted: they decide nothing here.
+    explained : float
+        The held-out sum of squares that effects added before have taken off: what their laws may have left of it is no
+        evidence for another one.
     progress : callable, optional
         Called with (done, total).
     """
@@ -190,7 +193,7 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
     # out as a simpler one: it cannot be named, and what it finds there is not held against the model.
     telling = [f for f in features if not (f.inside_zones and f.name in simpler)]
     tested = detection(fitted, telling, gains)
-    judged = judge(fitted, found, tested, simpler)
+    judged = judge(fitted, found, tested, simpler, explained)
     return Diagnosis(
         fit=fitted,
         judgement=judged,
@@ -199,21 +202,20 @@ def diagnose(fitted: Fit, *, progress: Callable[[int, int], None] | None = None)
         candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
         detection=tested,
         found=tuple(found),
-        unseen_rms=_rms(fitted.runs, predict_folds(fitted.problem, baseline(fitted))),
+        unseen_rms=shown_rms(fitted, baseline(fitted)),
     )
 
 
 def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> Tried:
     state = c.search.best
     assert state is not None
-    problem, runs = fitted.problem, fitted.runs
+    runs = fitted.runs
     modelled = [predict(r, m, state.coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
-    unseen = predict_folds(problem, c.search)
     share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,
         rms=_rms(runs, modelled),
-        held_out_rms=_rms(runs, unseen),
+        held_out_rms=shown_rms(fitted, c.search),
         gain=share,
         gain_errors=errors,
         p_value=tested.candidates.get(c.name),

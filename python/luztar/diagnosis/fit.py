@@ -174,6 +174,7 @@ def fit_prepared(
         if not (located and _is_started(model, name)):
             _search_grid(problem, search, name)
     search.refine(problem)
+    search.polish(problem)
     return finish(problem, search, unseen, floor)
 
 

@@ -26,7 +26,7 @@ _POINTS = {
 # A travel below this many steps of the position sensor is no travel to speak of.
 SHOWN_STEPS = 2.5
 # Searched in the logarithm.
-_GEOMETRIC = ("speed", "travel", "time", "rest", "width", "resolution")
+_GEOMETRIC = ("speed", "travel", "time", "rest", "width", "resolution", "delay")
 # A few values, taken as they are.
 _DISCRETE = ("count", "shape")
 # One value, given by the runs.
@@ -87,7 +87,9 @@ def points(parameter: Parameter, runs: Sequence[Prepared]) -> np.ndarray:
             # From a tenth of a second, shorter than a hand can pause, to ten times the usual rest.
             return np.geomspace(0.1, 5.0, count)
         case "delay":
-            return np.linspace(parameter.high / count, parameter.high, count)
+            # From one sample of the record, by which channels may well be apart.
+            sample_s = min(r.duration_s / len(r.recording) for r in runs)
+            return np.geomspace(min(sample_s, 0.1 * parameter.high), parameter.high, count)
         case "count":
             return np.arange(parameter.low, parameter.high + 0.5)
         case "shape":

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..model import Parameter, card
-from .equations import Blocks, blocks
+from .equations import Blocks, Columns, blocks
 from .grids import is_geometric, is_sharpness, word
 from .jacobian import continuous, jacobian
 from .profile import Problem, State, owners
@@ -26,6 +26,8 @@ LEVEL = 0.95
 # Where the others explain all but this share of a column's length, the data cannot tell its coefficient: a variance
 # inflation of 10^4, an interval a hundred times wider than the noise asks for.
 COLLINEAR_SHARE = 0.01
+# The motion under way tells a coefficient by itself where its standard error is within this factor of that of all.
+TOLD_IN_MOTION = 4.0
 
 
 @dataclass(frozen=True)
@@ -72,8 +74,10 @@ def estimates(problem: Problem, fitted: State) -> dict[str, Estimate]:
     parts = blocks(problem.runs, made, problem.weights)
     full = parts.solve()
     covariance, degrees = jackknife(parts, full)
-    collinear = _collinear(parts.gram.sum(axis=0))
     quantile = student(degrees)
+    pull = _pull_of_reversals(problem, made, full, covariance)
+    covariance = covariance + np.outer(pull, pull) / quantile**2
+    collinear = _collinear(parts.gram.sum(axis=0))
     model = problem.model
     free = [o for o in owners(fitted.terms, model) if o not in problem.fixed]
     out: dict[str, Estimate] = {}
@@ -128,6 +132,20 @@ def jackknife(parts: Blocks, full: np.ndarray) -> tuple[np.ndarray, int]:
         return np.full((full.size, full.size), np.inf), 1
     changes = np.array([parts.solve(kept[kept != j]) - full for j in kept])
     return (count - 1) / count * changes.T @ changes, count - 1
+
+
+def _pull_of_reversals(problem: Problem, made: Columns, full: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Return by how much each coefficient changes without the reversal zones; zero where only they tell it.
+
+    How a motion starts is extrapolated from what the sensor shows, the same way for every stroke: what that gets wrong
+    does not average out over strokes, and leaving one out does not show it.
+    """
+    moving = [m * ~r.zone[:, None] for r, m in zip(problem.runs, made.matrix, strict=True)]
+    parts = blocks(problem.runs, Columns(made.terms, tuple(moving)), problem.weights)
+    without = parts.solve()
+    spread, _ = jackknife(parts, without)
+    told = np.diag(spread) <= TOLD_IN_MOTION**2 * np.diag(covariance)
+    return np.where(told, without - full, 0.0)
 
 
 def _collinear(gram: np.ndarray) -> np.ndarray:

@@ -216,7 +216,8 @@ def _scores(
         # A common shift of the starts is the sensor's, not a missing effect, as long as it stays inside what the sensor
         # leaves open; beyond, it is taken off only as far as that.
         if abs(start_shift) >= 0.999 * start_bound:
-            basis, response = basis[:, :-1], response - np.copysign(start_bound, start_shift) * basis[:, -1]
+            # The first column, what starts wrong by a share of their uncertainty add, is spent then as well.
+            basis, response = basis[:, 1:-1], response - np.copysign(start_bound, start_shift) * basis[:, -1]
         q, _ = np.linalg.qr(_scaled(basis))
         residual = response - q @ (q.T @ response)
         owner = np.concatenate(owners)

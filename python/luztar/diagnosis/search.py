@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .folds import Folds
+from .polish import polish
 from .profile import ROUNDS, Problem, State, refine
 
 
@@ -61,3 +62,8 @@ class Search:
         """Refine the best state, letting the folds judge every step."""
         assert self.best is not None
         refine(problem, self.best, only=only, rounds=rounds, visit=self.visit)
+
+    def polish(self, problem: Problem) -> None:
+        """Step all inner parameters of the best state together."""
+        assert self.best is not None
+        polish(problem, self.best, self.visit)

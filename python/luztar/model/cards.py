@@ -76,6 +76,7 @@ class Card:
     becomes: str | None
     channel: str | None
     needs: str | None
+    structures: tuple[str, ...]
     parameters: tuple[Parameter, ...]
 
     @property
@@ -87,6 +88,10 @@ class Card:
     def linear(self) -> tuple[Parameter, ...]:
         """The parameters that multiply columns, in the order of the columns."""
         return tuple(p for p in self.parameters if p.role != "inner")
+
+    def is_searched_on(self, structure: str) -> bool:
+        """Whether a search on a structure tries the effect; a model may hold it anywhere."""
+        return not self.structures or structure in self.structures
 
     @property
     def is_decoy(self) -> bool:
@@ -148,7 +153,7 @@ def _all(structure: str) -> dict[str, Card]:
             raw |= {"typical": "", **steering_words.WORDS[raw["name"]]}
             parameters = tuple(_for_steering(raw["name"], p) for p in parameters)
             parameters = tuple(p for p in parameters if p.key not in steering_words.RIGID)
-        fields: dict[str, Any] = {**raw, "parameters": parameters}
+        fields: dict[str, Any] = {**raw, "structures": tuple(raw["structures"]), "parameters": parameters}
         found[raw["name"]] = Card(**fields)
     return found
 
@@ -182,6 +187,7 @@ def own_card(structure: str) -> Card | None:
         becomes=None,
         channel=None,
         needs=None,
+        structures=(),
         parameters=parameters,
     )
 

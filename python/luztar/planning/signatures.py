@@ -192,7 +192,9 @@ def _moved(v: Variant, by: int) -> Variant:
 
 
 def _has_meaning(c: Card, model: Model) -> bool:
-    if c.is_decoy or c.channel or c.name in model.effects or (c.needs and c.needs not in model.effects):
+    if not c.is_searched_on(model.structure_name) or c.is_decoy or c.channel or c.name in model.effects:
+        return False
+    if c.needs and c.needs not in model.effects:
         return False
     return not (c.per_turn and model.structure_name == "axis" and "pitch_m" not in model.known)
 

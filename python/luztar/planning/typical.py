@@ -70,7 +70,7 @@ def typical_inner(effect: Card, model: Model, reach: Reach) -> tuple[float, ...]
             (math.radians(15.0), math.radians(6.0)) if rig else (reach.low + 0.6 * reach.span, 0.05 * reach.span)
         ),
         "delay": (0.03 if rig else 0.003,),
-        "lead": (0.015 if rig else 0.002,),
+        "lead": (0.03 if rig else 0.002,),
         "warmup": (0.25 * reach.duration_s,),
         "dwell": (0.4,),
     }

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import signal
+
 # A screen is 2000 to 4000 columns wide: more points cost file size and show nothing.
 MAX_POINTS = 4000
 
@@ -31,17 +33,10 @@ def extremes(*series: np.ndarray, points: int = MAX_POINTS) -> np.ndarray:
         raise ValueError(f"the series differ in length: {[s.size for s in series]}")
     if n <= points:
         return np.arange(n)
-    broken = [np.isnan(s) for s in series]
-    kept_per_stretch = sum(3 if b.any() else 2 for b in broken)
+    kept_per_stretch = sum(3 if np.isnan(s).any() else 2 for s in series)
     count = max((points - 2) // kept_per_stretch, 1)
-    edges = np.linspace(0, n, count + 1).astype(int)
     keep = np.zeros(n, bool)
     keep[[0, n - 1]] = True
-    for values, nan in zip(series, broken, strict=True):
-        low, high = np.where(nan, np.inf, values), np.where(nan, -np.inf, values)
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
-            keep[a + int(low[a:b].argmin())] = True
-            keep[a + int(high[a:b].argmax())] = True
-            if nan[a:b].any():
-                keep[a + int(nan[a:b].argmax())] = True
+    for values in series:
+        keep[signal.extremes(values, count)] = True
     return np.flatnonzero(keep)

@@ -114,9 +114,7 @@ def verify(
     torque = np.concatenate([p.torque_nm[reading][c.inside] for p, c in parts]) - offset_nm
     angle = np.concatenate([p.angle_deg[c.inside] for p, c in parts])
     moving = np.concatenate([np.abs(p.speed_deg_s[c.inside]) >= REST_DEG_S for p, c in parts])
-    moments = stats.Moments()
-    moments.push(direction * torque)
-    mean, std = _settled(moments)
+    mean, std = _settled(stats.Moments(direction * torque))
     line = regression.line(angle, torque)
     found = judge(mean, std, rules)
     doubts += _doubt_rest(direction * torque, moving, found, rules)
@@ -155,9 +153,7 @@ def _doubt_rest(signed_nm: np.ndarray, moving: np.ndarray, found: Judgement, rul
         return []
     from .. import stats
 
-    moments = stats.Moments()
-    moments.push(np.ascontiguousarray(signed_nm[moving]))
-    if judge(*_settled(moments), rules) == found:
+    if judge(*_settled(stats.Moments(signed_nm[moving])), rules) == found:
         return []
     share = 100.0 * (1.0 - float(moving.mean()))
     return [f"the wheel rested inside the window ({share:.0f} % of the samples), and the verdict rests on that"]

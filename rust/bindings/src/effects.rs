@@ -32,6 +32,7 @@ fn card<'py>(py: Python<'py>, effect: &Effect) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("channel", card.channel)?;
     dict.set_item("per_turn", card.per_turn)?;
     dict.set_item("needs", card.needs)?;
+    dict.set_item("structures", card.structures.to_vec())?;
     let parameters = card
         .parameters
         .iter()

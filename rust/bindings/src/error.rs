@@ -22,7 +22,9 @@ impl From<CoreError> for PyErr {
 
 /// What is wrong, where, and what to do: the three parts every error of the Python side has.
 fn parts(error: luztar::Error) -> (String, String, String) {
-    use luztar::Error::{Length, NonFinite, OutOfRange, Singular, Unknown};
+    use luztar::Error::{
+        Length, NonFinite, OutOfRange, Singular, Unknown, Unlike, Unrepresentable,
+    };
     match error {
         NonFinite { name, index, value } => (
             format!("{name} holds {value} at index {index}"),
@@ -51,6 +53,16 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             format!("unknown {what} '{name}'"),
             what.to_owned(),
             format!("Known are: {known}."),
+        ),
+        Unlike { what } => (
+            format!("{what} cannot be merged"),
+            "merge".to_owned(),
+            "Make both with the same settings.".to_owned(),
+        ),
+        Unrepresentable { name } => (
+            format!("{name} is too large or too small to be a number"),
+            name.to_owned(),
+            "Choose other units for the data.".to_owned(),
         ),
         Singular { name, reason } => (
             format!("{name} cannot be determined: {reason}"),

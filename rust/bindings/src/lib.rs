@@ -1,6 +1,8 @@
 //! The Python module `luztar._core`: the export list. Each binding slices, detaches, calls and maps the error.
-#![allow(missing_docs, clippy::needless_pass_by_value)]
+// Docstrings are Python's: they say array_like without backticks.
+#![allow(missing_docs, clippy::needless_pass_by_value, clippy::doc_markdown)]
 
+mod door;
 mod driven;
 mod dynamics;
 mod effects;
@@ -9,6 +11,7 @@ mod projections;
 mod regression;
 mod signal;
 mod stats;
+mod stream;
 
 use pyo3::prelude::*;
 
@@ -25,11 +28,18 @@ mod _core {
     #[pymodule_export]
     use crate::projections::project;
     #[pymodule_export]
-    use crate::regression::{LineSums, fit_line};
+    use crate::regression::{
+        LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, RollingPolynomial, fit_line,
+        fit_linear, fit_polynomial, huber, theil_sen,
+    };
     #[pymodule_export]
-    use crate::signal::{Filter, LowPass, zero_phase};
+    use crate::signal::{Butterworth, ZeroPhase, even, extremes, instruction_sets};
     #[pymodule_export]
-    use crate::stats::Moments;
+    use crate::stats::{
+        Counts, Moments, QuantileSketch, Rolling, moments_by_label, moments_by_window, rolling,
+    };
+    #[pymodule_export]
+    use crate::stream::{Bank, Filter, FixedLag};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

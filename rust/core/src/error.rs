@@ -47,6 +47,18 @@ pub enum Error {
         /// The names that exist.
         known: String,
     },
+    /// Two objects that cannot be merged.
+    #[error("{what} cannot be merged; make both with the same settings")]
+    Unlike {
+        /// The two, in words.
+        what: &'static str,
+    },
+    /// A result beyond the range of a double.
+    #[error("{name} is too large or too small to be a number; choose other units for the data")]
+    Unrepresentable {
+        /// The result.
+        name: &'static str,
+    },
     /// Columns that cannot be told apart: the least-squares problem has no unique answer.
     #[error("{name} cannot be determined: {reason}")]
     Singular {
@@ -55,6 +67,21 @@ pub enum Error {
         /// Why it has no unique value.
         reason: String,
     },
+}
+
+impl Error {
+    /// The same of a part that begins at this index of the whole.
+    #[must_use]
+    pub(crate) fn moved(self, by: usize) -> Self {
+        match self {
+            Self::NonFinite { name, index, value } => Self::NonFinite {
+                name,
+                index: index + by,
+                value,
+            },
+            other => other,
+        }
+    }
 }
 
 /// Refuses NaN and infinities, naming the first position.
@@ -69,6 +96,21 @@ pub fn require_finite(name: &'static str, values: &[f64]) -> Result<(), Error> {
             index,
             value: values[index],
         }),
+    }
+}
+
+/// Refuses a result that overflowed: extreme units, not extreme data.
+///
+/// # Errors
+/// [`Error::Unrepresentable`].
+pub(crate) fn require_representable(
+    name: &'static str,
+    mut values: impl Iterator<Item = f64>,
+) -> Result<(), Error> {
+    if values.all(f64::is_finite) {
+        Ok(())
+    } else {
+        Err(Error::Unrepresentable { name })
     }
 }
 

@@ -9,6 +9,9 @@ use nalgebra::{DMatrix, DVector};
 /// the columns': this leaves four digits. Below it the shortest solution is taken.
 const CONDITION: f64 = 1e-12;
 
+/// A column this much shorter than the longest is nothing: an exponential that has died away, a spot never visited.
+const NOTHING: f64 = 1e-30;
+
 /// One stroke of a run, in kept samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rows {
@@ -170,9 +173,17 @@ pub fn solve(block: &[f64], size: usize, bound: f64) -> Vec<f64> {
 
 fn solve_free(mut products: DMatrix<f64>, mut right: DVector<f64>) -> DVector<f64> {
     let count = right.len();
-    let scale: Vec<f64> = (0..count)
-        .map(|i| products[(i, i)].max(f64::MIN_POSITIVE).sqrt())
-        .collect();
+    let mut scale: Vec<f64> = (0..count).map(|i| products[(i, i)].sqrt()).collect();
+    let longest = scale.iter().fold(0.0_f64, |m, s| m.max(*s));
+    for (i, s) in scale.iter_mut().enumerate() {
+        // A column that these strokes do not show has no coefficient, whatever rounding makes of it.
+        if *s <= NOTHING * longest {
+            *s = 1.0;
+            products.row_mut(i).fill(0.0);
+            products.column_mut(i).fill(0.0);
+            right[i] = 0.0;
+        }
+    }
     for i in 0..count {
         for j in 0..count {
             products[(i, j)] /= scale[i] * scale[j];

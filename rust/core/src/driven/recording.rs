@@ -9,7 +9,7 @@ use super::staircase::join_steps;
 use super::strokes::{Phases, Stroke, strokes, turning_points};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
-use crate::signal::{AntiAlias, CutoffAt, Edges, LowPass, Passes, ZeroPhase};
+use crate::signal::{AntiAlias, Band as PassBand, Butterworth, CutoffAt, Edges, Passes, ZeroPhase};
 
 /// Poles per pass of the low pass of a comparison and of the kinematics.
 const POLES: usize = 4;
@@ -122,7 +122,7 @@ impl Recording {
         let (stride, decimate) = strides(sample_rate_hz, band);
         let law_rate_hz = sample_rate_hz / stride as f64;
         let low_pass = if band.anti_alias {
-            ZeroPhase::anti_alias(&AntiAlias::new(decimate)?)
+            ZeroPhase::anti_alias(&AntiAlias::new(decimate)?)?
         } else {
             zero_phase(band.upper_hz, law_rate_hz)?
         };
@@ -130,12 +130,12 @@ impl Recording {
             .then(|| zero_phase(FOLDING_OVER_BAND * band.upper_hz, sample_rate_hz))
             .transpose()?;
         let kinematic_hz = KINEMATICS_OVER_BAND * band.upper_hz;
-        let mut smoother = (kinematic_hz < 0.45 * sample_rate_hz)
+        let smoother = (kinematic_hz < 0.45 * sample_rate_hz)
             .then(|| zero_phase(kinematic_hz, sample_rate_hz))
             .transpose()?;
-        let mut smoothed = |x: &[f64]| {
+        let smoothed = |x: &[f64]| {
             smoother
-                .as_mut()
+                .as_ref()
                 .map_or_else(|| Ok(x.to_vec()), |filter| run(filter, x))
         };
         let mut smooth = smoothed(position)?;
@@ -144,27 +144,30 @@ impl Recording {
             let joined = join_steps(position);
             smooth = smoothed(&joined)?;
             joined
-        } else if resolution.step > NEGLIGIBLE_NOISE * span(&smooth) {
+        } else {
             // Noise faster than any start of a motion is taken off first.
             let quick_hz = TREMBLE_OVER_BAND * band.upper_hz;
             let (quick, quick_hz) = if quick_hz < 0.45 * sample_rate_hz {
                 (
-                    run(&mut zero_phase(quick_hz, sample_rate_hz)?, position)?,
+                    run(&zero_phase(quick_hz, sample_rate_hz)?, position)?,
                     quick_hz,
                 )
             } else {
                 (position.to_vec(), 0.5 * sample_rate_hz)
             };
             let certain = CERTAIN * noise(&quick, &smooth, (kinematic_hz / quick_hz).min(0.9));
-            resolution.step = 2.0 * certain;
-            let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
-            let quiet = held(&quick, &smooth, &turns, certain);
-            smooth = smoothed(&quiet)?;
-            quiet
-        } else {
-            position.to_vec()
+            // Smoothing takes the corners of a quick motion off as well: only what is left of it all along is noise.
+            if 2.0 * certain > NEGLIGIBLE_NOISE * span(&smooth) {
+                resolution.step = 2.0 * certain;
+                let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
+                let quiet = held(&quick, &smooth, &turns, certain);
+                smooth = smoothed(&quiet)?;
+                quiet
+            } else {
+                resolution.step = resolution.step.max(FINEST * span(&smooth));
+                position.to_vec()
+            }
         };
-        resolution.step = resolution.step.max(FINEST * span(&smooth));
         let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
         let strokes = strokes(&turns, &seen, resolution.step, sample_rate_hz);
         if let Some(load) = load_n {
@@ -273,7 +276,7 @@ impl Recording {
             return Ok(kept(channel, self.decimate));
         }
         let at_law_rate: Vec<f64> = match &self.folding {
-            Some(folding) => kept(&run(&mut folding.clone(), channel)?, self.stride),
+            Some(folding) => kept(&run(folding, channel)?, self.stride),
             None => channel.to_vec(),
         };
         Ok(kept(&self.filtered(&at_law_rate)?, self.every()))
@@ -281,7 +284,7 @@ impl Recording {
 
     /// A column through the comparison's low pass, at the rate of the laws.
     pub(super) fn filtered(&self, column: &[f64]) -> Result<Vec<f64>, Error> {
-        run(&mut self.low_pass.clone(), column)
+        run(&self.low_pass, column)
     }
 }
 
@@ -307,17 +310,17 @@ fn strides(sample_rate_hz: f64, band: Band) -> (usize, usize) {
 }
 
 fn zero_phase(cutoff_hz: f64, sample_rate_hz: f64) -> Result<ZeroPhase, Error> {
-    let design = LowPass::new(
+    let design = Butterworth::new(
         POLES,
-        cutoff_hz,
+        PassBand::Low { cutoff_hz },
         sample_rate_hz,
         Passes::ForwardBackward,
         CutoffAt::PerPass,
     )?;
-    ZeroPhase::new(design, Edges::default())
+    ZeroPhase::new(&design, Edges::default())
 }
 
-fn run(filter: &mut ZeroPhase, x: &[f64]) -> Result<Vec<f64>, Error> {
+fn run(filter: &ZeroPhase, x: &[f64]) -> Result<Vec<f64>, Error> {
     let mut out = vec![0.0; x.len()];
     filter.apply(x, &mut out)?;
     Ok(out)

@@ -59,7 +59,7 @@ pub enum Grid {
     Time,
     /// Geometric, around the rests between the strokes.
     Rest,
-    /// Even, between the bounds, the bounds being seconds of delay.
+    /// Geometric, from a sample of the record to the upper bound, in seconds.
     Delay,
     /// The whole numbers between the bounds.
     Count,
@@ -164,4 +164,6 @@ pub struct Card {
     pub channel: Option<&'static str>,
     /// Which effect must be in the model for this one to make sense, if any.
     pub needs: Option<&'static str>,
+    /// The structures on which a search tries it; empty for all of them. A model may hold it anywhere.
+    pub structures: &'static [&'static str],
 }

@@ -47,6 +47,7 @@ impl Law for Cogging {
         per_turn: true,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 2;
 

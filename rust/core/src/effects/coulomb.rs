@@ -39,6 +39,7 @@ impl Law for Coulomb {
         per_turn: false,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 1;
     const SHAPES_OTHERS: bool = true;

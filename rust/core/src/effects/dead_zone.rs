@@ -42,6 +42,7 @@ impl Law for DeadZone {
         per_turn: false,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

@@ -39,6 +39,7 @@ impl Law for DecoyAngle {
         per_turn: false,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

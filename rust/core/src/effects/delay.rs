@@ -29,6 +29,7 @@ impl Law for Delay {
         per_turn: false,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 0;
     const SHAPES_OTHERS: bool = true;

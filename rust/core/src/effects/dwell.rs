@@ -39,6 +39,7 @@ impl Law for Dwell {
         per_turn: false,
         channel: None,
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

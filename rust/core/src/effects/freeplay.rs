@@ -31,6 +31,7 @@ impl Law for Freeplay {
         per_turn: false,
         channel: None,
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 0;
     const SHAPES_OTHERS: bool = true;

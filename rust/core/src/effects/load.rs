@@ -29,6 +29,7 @@ impl Law for Load {
         per_turn: false,
         channel: Some("load"),
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

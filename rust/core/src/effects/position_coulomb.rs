@@ -29,6 +29,7 @@ impl Law for PositionCoulomb {
         per_turn: false,
         channel: None,
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

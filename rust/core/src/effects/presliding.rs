@@ -41,6 +41,7 @@ impl Law for Presliding {
         per_turn: false,
         channel: None,
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 0;
     const SHAPES_OTHERS: bool = true;

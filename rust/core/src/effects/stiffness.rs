@@ -29,6 +29,7 @@ impl Law for Stiffness {
         per_turn: false,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

@@ -47,6 +47,7 @@ impl Law for TightSpot {
         per_turn: false,
         channel: None,
         needs: Some("coulomb"),
+        structures: &[],
     };
     const COLUMNS: usize = 1;
 

@@ -39,6 +39,7 @@ impl Law for TwicePerRev {
         per_turn: true,
         channel: None,
         needs: None,
+        structures: &[],
     };
     const COLUMNS: usize = 2;
 

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{LN_10, PI};
 
-use super::cascade::{Cascade, MAX_PAIRS, Pair};
+use super::cascade::Cascade;
+use super::section::{LOW, Section};
 use crate::Error;
 
 /// Poles per pass, ripple and edge as the decimation of `scipy.signal.decimate`, so that figures can be compared.
@@ -15,8 +16,6 @@ pub const EDGE_OVER_NYQUIST: f64 = 0.8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AntiAlias {
     pub(super) cascade: Cascade,
-    /// The logarithm of the largest pole radius.
-    pub(super) ln_radius: f64,
 }
 
 impl AntiAlias {
@@ -36,25 +35,19 @@ impl AntiAlias {
         // Poles of the prototype: -sinh(mu) sin(theta) +- i cosh(mu) cos(theta).
         let epsilon = (RIPPLE_DB * LN_10 / 10.0).exp_m1().sqrt();
         let mu = (1.0 / epsilon).asinh() / POLES as f64;
-        let mut pairs = [Pair::default(); MAX_PAIRS];
-        let mut ln_radius = f64::NEG_INFINITY;
-        for (i, place) in pairs.iter_mut().take(POLES / 2).enumerate() {
-            let theta = PI * (2 * i + 1) as f64 / (2 * POLES) as f64;
+        let pairs = (0..POLES / 2).map(|i| {
             // From the most damped pair (theta near a right angle) to the least.
-            let theta = 0.5 * PI - theta;
+            let theta = 0.5 * PI - PI * (2 * i + 1) as f64 / (2 * POLES) as f64;
             let (real, imaginary) = (mu.sinh() * theta.sin(), mu.cosh() * theta.cos());
             let natural = real.hypot(imaginary);
-            let (gn, k) = (g * natural, 2.0 * real / natural);
-            *place = Pair::new(gn, k);
-            ln_radius = ln_radius.max(0.5 * (-2.0 * gn * k / (1.0 + gn * k + gn * gn)).ln_1p());
-        }
+            Section::Pair {
+                g: g * natural,
+                k: 2.0 * real / natural,
+                mix: LOW,
+            }
+        });
         Ok(Self {
-            cascade: Cascade {
-                single: None,
-                pairs,
-                n_pairs: POLES / 2,
-            },
-            ln_radius,
+            cascade: Cascade::new(pairs, 1.0),
         })
     }
 }

@@ -42,4 +42,46 @@ impl Compensated {
         let leading = Self::sum(self.value, -other.value);
         leading.value + (leading.rest + (self.rest - other.rest))
     }
+
+    /// The product, to about twice the digits of a double.
+    pub(crate) fn times(self, other: Self) -> Self {
+        let Self { value, rest } = Self::product(self.value, other.value);
+        Self::sum(
+            value,
+            rest + (self.value * other.rest + self.rest * other.value),
+        )
+    }
+
+    /// The exact product of two doubles, below the square root of the largest in magnitude.
+    pub(crate) fn product(a: f64, b: f64) -> Self {
+        let value = a * b;
+        let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+        let rest = ((a_high * b_high - value) + a_high * b_low + a_low * b_high) + a_low * b_low;
+        Self { value, rest }
+    }
+
+    /// The sum, to about twice the digits of a double.
+    pub(crate) fn plus(mut self, other: Self) -> Self {
+        self.add_compensated(other);
+        self
+    }
+}
+
+impl std::ops::Neg for Compensated {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            rest: -self.rest,
+        }
+    }
+}
+
+/// Two parts of 26 bits each. Source: Dekker, Numer. Math. 18 (1971) 224.
+fn halves(a: f64) -> (f64, f64) {
+    const SPLIT: f64 = 134_217_729.0; // 2^27 + 1
+    let scaled = SPLIT * a;
+    let high = scaled - (scaled - a);
+    (high, a - high)
 }

@@ -1,54 +1,88 @@
-//! Count, mean, spread and extremes of a stream in one object that can be pushed and merged.
+//! Count, mean, spread, shape and extremes of a stream in one object that can be pushed and merged.
 //!
-//! Never `mean(x^2) - mean(x)^2`: that difference loses twice the digits of mean/std. Each block of samples is centred
-//! on its own mean and joined to the rest by the pairwise update; means are carried with their rounding remainder,
-//! so that the difference of two nearly equal means keeps its digits.
-//!
-//! Source: Chan, Golub, `LeVeque`, Am. Stat. 37 (1983) 242, the pairwise update.
+//! Samples wait until a block is full, so that the sums are the same to the last bit whatever the chunks were.
 
-use super::compensated::Compensated;
-use crate::error::{Error, require_moderate};
+use super::figures::Figures;
+use super::spread::{BLOCK, Range, Spread};
+use crate::error::{Error, LARGEST};
 
-/// Samples centred together: two reads of 4 KiB stay in the first-level cache.
-const BLOCK: usize = 512;
-
-/// Independent partial sums, enough to fill the widest vector registers and hide the latency of an addition.
-const LANES: usize = 16;
+/// The largest magnitude where third and fourth powers are summed as well: its fourth power is [`LARGEST`]'s square.
+pub const LARGEST_FOR_SHAPE: f64 = 1e75;
 
 /// An extreme value and where it was first met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
     /// The value.
     pub value: f64,
-    /// Its index in the stream, from zero.
+    /// Its index in the stream, from zero; skipped samples count.
     pub index: u64,
 }
 
+/// What is asked of the moments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Sum the third and fourth powers too (skew and kurtosis).
+    pub shape: bool,
+    /// Leave NaN out and count it, instead of refusing it. Infinities are refused in any case.
+    pub skip_nan: bool,
+    /// Samples at or below the first or at or above the second are counted as clipped.
+    pub clipped_at: (f64, f64),
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            shape: false,
+            skip_nan: false,
+            clipped_at: (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+}
+
 /// The moments of everything pushed so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
-    spread: Spread,
-    min: Option<Extreme>,
-    max: Option<Extreme>,
+    pub(super) settings: Settings,
+    pub(super) done: Done,
+    /// Kept samples that do not fill a block yet.
+    pub(super) waiting: [f64; BLOCK],
+    pub(super) filled: usize,
 }
 
-/// What the pairwise update joins.
+/// Everything but the waiting samples: what a refused chunk must leave as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Spread {
-    count: u64,
-    mean: Compensated,
-    /// The sum of squared deviations from the mean.
-    squares: Compensated,
+pub(super) struct Done {
+    pub(super) spread: Spread,
+    /// Samples seen, skipped ones included.
+    pub(super) seen: u64,
+    pub(super) nan: u64,
+    pub(super) clipped: u64,
+    pub(super) min: Option<Extreme>,
+    pub(super) max: Option<Extreme>,
 }
 
-/// The numbers [`Moments::state`] needs.
-pub const STATE_LEN: usize = 6;
+impl Default for Moments {
+    fn default() -> Self {
+        Self::new(Settings::default())
+    }
+}
 
 impl Moments {
     /// Nothing pushed yet.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            done: Done::default(),
+            waiting: [0.0; BLOCK],
+            filled: 0,
+        }
+    }
+
+    /// What was asked for.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.settings
     }
 
     /// Adds samples.
@@ -56,188 +90,276 @@ impl Moments {
     /// # Errors
     /// [`Error::NonFinite`] or [`Error::OutOfRange`]; nothing of a refused chunk is added.
     pub fn push(&mut self, x: &[f64]) -> Result<(), Error> {
-        require_moderate("x", x)?;
-        for block in x.chunks(BLOCK) {
-            self.push_extremes(block);
-            self.spread.merge(&Spread::of_block(block));
+        if self.settings.skip_nan {
+            return self.push_skipping(x);
+        }
+        let mut done = self.done;
+        let (head, rest) = if self.filled > 0 {
+            x.split_at(x.len().min(BLOCK - self.filled))
+        } else {
+            (&[][..], x)
+        };
+        let mut filled = self.filled;
+        if !head.is_empty() {
+            done.note(head, range_of(head), &self.settings, x)?;
+            // Beyond `self.filled` nothing counts until it is raised, so a later refusal needs no undoing.
+            self.waiting[filled..filled + head.len()].copy_from_slice(head);
+            filled += head.len();
+            if filled == BLOCK {
+                done.spread.merge(
+                    &Spread::of_block(&self.waiting, self.settings.shape).0,
+                    self.settings.shape,
+                );
+                filled = 0;
+            }
+        }
+        let (blocks, tail) = rest.as_chunks::<BLOCK>();
+        for block in blocks {
+            let (spread, range) = Spread::of_block(block, self.settings.shape);
+            // NaN hides from comparisons but not from the sum.
+            let range = if spread.mean.value.is_finite() {
+                range
+            } else {
+                NOT_FINITE
+            };
+            done.note(block, range, &self.settings, x)?;
+            done.spread.merge(&spread, self.settings.shape);
+        }
+        if !tail.is_empty() {
+            done.note(tail, range_of(tail), &self.settings, x)?;
+            self.waiting[..tail.len()].copy_from_slice(tail);
+            filled = tail.len();
+        }
+        self.done = done;
+        self.filled = filled;
+        Ok(())
+    }
+
+    /// Adds samples of another type, block by block, without a converted copy of the chunk.
+    ///
+    /// # Errors
+    /// As [`Self::push`]; nothing of a refused chunk is added.
+    pub fn push_converted<T: Copy + Into<f64>>(&mut self, x: &[T]) -> Result<(), Error> {
+        let before = *self;
+        let mut buffer = [0.0; BLOCK];
+        for (at, part) in x.chunks(BLOCK).enumerate() {
+            let converted = &mut buffer[..part.len()];
+            for (to, from) in converted.iter_mut().zip(part) {
+                *to = (*from).into();
+            }
+            if let Err(error) = self.push(converted) {
+                *self = before;
+                return Err(error.moved(at * BLOCK));
+            }
         }
         Ok(())
     }
 
-    /// Updates the extremes before the block is counted; positions are looked for only where one is beaten.
-    fn push_extremes(&mut self, block: &[f64]) {
-        let (low, high) = lane_extremes(block);
-        let at = |value: f64| {
-            let inside = block.iter().position(|v| *v == value).unwrap_or(0);
-            let index = self.spread.count + inside as u64;
-            Some(Extreme { value, index })
-        };
-        if self.min.is_none_or(|old| low < old.value) {
-            self.min = at(low);
-        }
-        if self.max.is_none_or(|old| high > old.value) {
-            self.max = at(high);
-        }
+    /// Adds one sample.
+    ///
+    /// # Errors
+    /// As [`Self::push`].
+    #[inline]
+    pub fn push_one(&mut self, v: f64) -> Result<(), Error> {
+        self.push(std::slice::from_ref(&v))
     }
 
-    /// Adds the samples another object has seen, as if they came after this one's.
-    pub fn merge(&mut self, later: &Self) {
+    /// The slower way of records with NaN: looked through before anything is added, then kept sample by sample.
+    fn push_skipping(&mut self, x: &[f64]) -> Result<(), Error> {
+        let most = self.settings.largest();
+        if !x.iter().all(|v| v.is_nan() || v.abs() <= most) {
+            return Err(refusal(x, most, true));
+        }
+        for part in x.chunk_by(|a, b| a.is_nan() == b.is_nan()) {
+            if part[0].is_nan() {
+                self.done.nan += part.len() as u64;
+                self.done.seen += part.len() as u64;
+            } else {
+                let plain = Settings {
+                    skip_nan: false,
+                    ..self.settings
+                };
+                let policy = std::mem::replace(&mut self.settings, plain);
+                let added = self.push(part);
+                self.settings = policy;
+                added?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Says that the next sample is the one of this index: what lies between was not for this object.
+    pub(crate) fn go_to(&mut self, index: u64) {
+        self.done.seen = index;
+    }
+
+    /// Adds the samples another object has seen, as if they came after this one's. The settings stay this one's.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] where the other lacks what this one sums, or counted clipping at other limits.
+    pub fn merge(&mut self, later: &Self) -> Result<(), Error> {
+        if self.settings.shape && !later.settings.shape {
+            return Err(Error::Unlike {
+                what: "moments with shape and moments without",
+            });
+        }
+        if self.settings.clipped_at != later.settings.clipped_at {
+            return Err(Error::Unlike {
+                what: "moments that count clipping at different limits",
+            });
+        }
+        let (shape, start) = (self.settings.shape, self.done.seen);
+        let other = later.done;
+        let total = later.total();
+        self.done.spread = self.total();
+        self.filled = 0;
+        self.done.spread.merge(&total, shape);
         let shift = |e: Extreme| Extreme {
-            index: e.index + self.spread.count,
+            index: e.index + start,
             ..e
         };
-        self.min = first_of(self.min, later.min.map(shift), |new, old| new < old);
-        self.max = first_of(self.max, later.max.map(shift), |new, old| new > old);
-        self.spread.merge(&later.spread);
+        self.done.min = first_of(self.done.min, other.min.map(shift), |new, old| new < old);
+        self.done.max = first_of(self.done.max, other.max.map(shift), |new, old| new > old);
+        self.done.seen += other.seen;
+        self.done.nan += other.nan;
+        self.done.clipped += other.clipped;
+        Ok(())
     }
 
-    /// How many samples.
+    /// The sums with the waiting samples in them.
+    fn total(&self) -> Spread {
+        let mut spread = self.done.spread;
+        if self.filled > 0 {
+            let shape = self.settings.shape;
+            spread.merge(
+                &Spread::of_block(&self.waiting[..self.filled], shape).0,
+                shape,
+            );
+        }
+        spread
+    }
+
+    /// How many samples are in the moments: those skipped are not.
     #[must_use]
     pub fn count(&self) -> u64 {
-        self.spread.count
+        self.done.spread.count + self.filled as u64
     }
 
-    /// The mean; None of nothing.
+    /// How many NaN were skipped.
     #[must_use]
-    pub fn mean(&self) -> Option<f64> {
-        (self.count() > 0).then_some(self.spread.mean.value)
+    pub fn nan_count(&self) -> u64 {
+        self.done.nan
     }
 
-    /// The mean squared deviation, divided by `n`; None of nothing.
+    /// How many samples lay at or beyond the limits.
     #[must_use]
-    pub fn variance_population(&self) -> Option<f64> {
-        (self.count() > 0).then(|| self.sum_of_squares() / self.count() as f64)
-    }
-
-    /// The estimated variance, divided by `n - 1`; None below two samples.
-    #[must_use]
-    pub fn variance_sample(&self) -> Option<f64> {
-        (self.count() > 1).then(|| self.sum_of_squares() / (self.count() - 1) as f64)
-    }
-
-    /// The population standard deviation (TB 038); None of nothing.
-    #[must_use]
-    pub fn std_population(&self) -> Option<f64> {
-        self.variance_population().map(f64::sqrt)
-    }
-
-    /// The sample standard deviation; None below two samples.
-    #[must_use]
-    pub fn std_sample(&self) -> Option<f64> {
-        self.variance_sample().map(f64::sqrt)
-    }
-
-    /// The root of the mean square; None of nothing.
-    #[must_use]
-    pub fn rms(&self) -> Option<f64> {
-        let variance = self.variance_population()?;
-        Some(self.spread.mean.value.hypot(variance.sqrt()))
+    pub fn clipped_count(&self) -> u64 {
+        self.done.clipped
     }
 
     /// The smallest sample and its first index; None of nothing.
     #[must_use]
     pub fn min(&self) -> Option<Extreme> {
-        self.min
+        self.done.min
     }
 
     /// The largest sample and its first index; None of nothing.
     #[must_use]
     pub fn max(&self) -> Option<Extreme> {
-        self.max
+        self.done.max
     }
 
-    /// The sum of squared deviations from the mean.
+    /// Mean, deviations and shape, from one look at the sums.
     #[must_use]
-    pub fn sum_of_squares(&self) -> f64 {
-        self.spread.squares.value.max(0.0)
-    }
-
-    /// Mean, its remainder, squared deviations, their remainder, smallest, largest: with the count and the two
-    /// indices all there is to store.
-    #[must_use]
-    pub fn state(&self) -> [f64; STATE_LEN] {
-        let value = |e: Option<Extreme>| e.map_or(0.0, |e| e.value);
-        let Spread { mean, squares, .. } = self.spread;
-        [
-            mean.value,
-            mean.rest,
-            squares.value,
-            squares.rest,
-            value(self.min),
-            value(self.max),
-        ]
-    }
-
-    /// Rebuilds what [`Self::state`] stored.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`] for numbers it cannot have made, [`Error::OutOfRange`] for an index beyond the count.
-    pub fn from_state(
-        count: u64,
-        state: [f64; STATE_LEN],
-        min_index: u64,
-        max_index: u64,
-    ) -> Result<Self, Error> {
-        crate::error::require_finite("state", &state)?;
-        if count == 0 {
-            return Ok(Self::default());
+    pub fn figures(&self) -> Figures {
+        Figures {
+            spread: self.total(),
+            shape: self.settings.shape,
         }
-        if min_index.max(max_index) >= count {
-            return Err(Error::OutOfRange {
-                name: "index",
-                value: min_index.max(max_index) as f64,
-                interval: format!("[0, {count})"),
-            });
-        }
-        let [mean, mean_rest, squares, squares_rest, min, max] = state;
-        let carried = |value, rest| Compensated { value, rest };
-        let extreme = |value, index| Some(Extreme { value, index });
-        Ok(Self {
-            spread: Spread {
-                count,
-                mean: carried(mean, mean_rest),
-                squares: carried(squares, squares_rest),
-            },
-            min: extreme(min, min_index),
-            max: extreme(max, max_index),
-        })
     }
 }
 
-impl Spread {
-    fn merge(&mut self, later: &Self) {
-        if later.count == 0 {
-            return;
+impl Settings {
+    fn largest(&self) -> f64 {
+        if self.shape {
+            LARGEST_FOR_SHAPE
+        } else {
+            LARGEST
         }
-        if self.count == 0 {
-            *self = *later;
-            return;
-        }
-        let (na, nb) = (self.count as f64, later.count as f64);
-        let total = na + nb;
-        let apart = later.mean.minus(self.mean);
-        self.mean.add(apart * (nb / total));
-        self.squares.add_compensated(later.squares);
-        self.squares.add(apart * apart * (na * (nb / total)));
-        self.count += later.count;
     }
+}
 
-    /// One non-empty block by two passes about its first sample.
-    fn of_block(block: &[f64]) -> Self {
-        let origin = block[0];
-        let n = block.len() as f64;
-        let [sum] = lane_sums(block, |v| [v - origin]);
-        let mean = sum / n;
-        let [deviation, squares] = lane_sums(block, |v| {
-            let d = (v - origin) - mean;
-            [d, d * d]
-        });
-        Self {
-            count: block.len() as u64,
-            // The second pass corrects the mean. The squares need no such correction: it would be the square of the
-            // mean's rounding, and the origin, whose distance rounds, is itself one of the samples.
-            mean: Compensated::sum(origin, mean + deviation / n),
-            squares: squares.into(),
+impl Done {
+    /// Takes notice of finite samples before they are summed: extremes, clipping, position.
+    fn note(
+        &mut self,
+        part: &[f64],
+        range: Range,
+        settings: &Settings,
+        chunk: &[f64],
+    ) -> Result<(), Error> {
+        let most = settings.largest();
+        if !(range.low >= -most && range.high <= most) {
+            return Err(refusal(chunk, most, false));
+        }
+        // Positions are looked for only where an extreme is beaten.
+        let at = |value: f64| {
+            let inside = part.iter().position(|v| *v == value).unwrap_or(0);
+            let index = self.seen + inside as u64;
+            Some(Extreme { value, index })
+        };
+        let (mut min, mut max) = (self.min, self.max);
+        if min.is_none_or(|old| range.low < old.value) {
+            min = at(range.low);
+        }
+        if max.is_none_or(|old| range.high > old.value) {
+            max = at(range.high);
+        }
+        (self.min, self.max) = (min, max);
+        let (low, high) = settings.clipped_at;
+        if range.low <= low || range.high >= high {
+            self.clipped += part.iter().filter(|v| **v <= low || **v >= high).count() as u64;
+        }
+        self.seen += part.len() as u64;
+        Ok(())
+    }
+}
+
+/// A range that no limit admits.
+const NOT_FINITE: Range = Range {
+    low: f64::NAN,
+    high: f64::NAN,
+};
+
+/// The range of a part, not a number if the part holds one that is not.
+fn range_of(part: &[f64]) -> Range {
+    if let [only] = part {
+        // one sample at a time is a way of its own: nothing to be compared
+        return Range {
+            low: *only,
+            high: *only,
+        };
+    }
+    let (sum, range) = Range::of(part);
+    if sum.is_finite() { range } else { NOT_FINITE }
+}
+
+/// Says which sample of the chunk cannot be taken.
+fn refusal(chunk: &[f64], most: f64, nan_is_skipped: bool) -> Error {
+    let refused = |v: &f64| !(v.abs() <= most || nan_is_skipped && v.is_nan());
+    let index = chunk.iter().position(refused).unwrap_or(0);
+    let value = chunk[index];
+    if value.is_finite() {
+        Error::OutOfRange {
+            name: "x",
+            value,
+            interval: format!("[-{most:e}, {most:e}]"),
+        }
+    } else {
+        Error::NonFinite {
+            name: "x",
+            index,
+            value,
         }
     }
 }
@@ -255,76 +377,53 @@ fn first_of(
     }
 }
 
-/// Sums of several terms per sample, in independent lanes that are added at the end.
-fn lane_sums<const K: usize>(block: &[f64], terms: impl Fn(f64) -> [f64; K]) -> [f64; K] {
-    let mut lanes = [[0.0; LANES]; K];
-    let (chunks, rest) = block.as_chunks::<LANES>();
-    for chunk in chunks {
-        for (lane, v) in chunk.iter().enumerate() {
-            let t = terms(*v);
-            for k in 0..K {
-                lanes[k][lane] += t[k];
-            }
-        }
-    }
-    let mut sums = lanes.map(|lane| lane.iter().sum());
-    for v in rest {
-        let t = terms(*v);
-        for k in 0..K {
-            sums[k] += t[k];
-        }
-    }
-    sums
-}
-
-/// The smallest and the largest value of a non-empty block of finite numbers.
-fn lane_extremes(block: &[f64]) -> (f64, f64) {
-    // Written as comparisons: with no NaN to think of, each is one instruction.
-    let smaller = |a: f64, b: f64| if b < a { b } else { a };
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    let (mut low, mut high) = ([block[0]; LANES], [block[0]; LANES]);
-    let (chunks, rest) = block.as_chunks::<LANES>();
-    for chunk in chunks {
-        for lane in 0..LANES {
-            low[lane] = smaller(low[lane], chunk[lane]);
-            high[lane] = larger(high[lane], chunk[lane]);
-        }
-    }
-    let low = low.into_iter().chain(rest.iter().copied());
-    let high = high.into_iter().chain(rest.iter().copied());
-    (low.fold(block[0], smaller), high.fold(block[0], larger))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::Moments;
+    use super::{Moments, Settings};
 
     #[test]
     fn nothing_has_no_mean_and_one_sample_no_sample_deviation() {
-        let mut m = Moments::new();
-        assert_eq!(m.mean(), None);
+        let mut m = Moments::default();
+        assert_eq!(m.figures().mean(), None);
         m.push(&[3.0]).expect("finite");
-        assert_eq!((m.mean(), m.std_population()), (Some(3.0), Some(0.0)));
-        assert_eq!(m.std_sample(), None);
+        let f = m.figures();
+        assert_eq!((f.mean(), f.std_population()), (Some(3.0), Some(0.0)));
+        assert_eq!(f.std_sample(), None);
     }
 
     #[test]
     fn a_large_offset_costs_no_digits() {
-        let mut m = Moments::new();
+        let mut m = Moments::default();
         for _ in 0..1000 {
             m.push(&[1e9 - 1.0, 1e9 + 1.0]).expect("finite");
         }
-        assert_eq!(m.mean(), Some(1e9));
-        assert_eq!(m.std_population(), Some(1.0));
+        assert_eq!(m.figures().mean(), Some(1e9));
+        assert_eq!(m.figures().std_population(), Some(1.0));
     }
 
     #[test]
     fn extremes_keep_their_first_index_across_merges() {
-        let (mut a, mut b) = (Moments::new(), Moments::new());
+        let (mut a, mut b) = (Moments::default(), Moments::default());
         a.push(&[2.0, 5.0]).expect("finite");
         b.push(&[5.0, -1.0, -1.0]).expect("finite");
-        a.merge(&b);
+        a.merge(&b).expect("alike");
         assert_eq!(a.max().map(|e| e.index), Some(1));
         assert_eq!(a.min().map(|e| e.index), Some(3));
+    }
+
+    #[test]
+    fn skipped_nan_is_counted_and_keeps_its_place() {
+        let settings = Settings {
+            skip_nan: true,
+            clipped_at: (-9.0, 9.0),
+            ..Settings::default()
+        };
+        let mut m = Moments::new(settings);
+        m.push(&[f64::NAN, 1.0, f64::NAN, 9.0, 9.5])
+            .expect("no infinity");
+        assert_eq!((m.count(), m.nan_count(), m.clipped_count()), (3, 2, 2));
+        assert_eq!(m.max().map(|e| e.index), Some(4));
+        assert!(m.push(&[0.0, f64::INFINITY]).is_err());
+        assert_eq!(m.count(), 3);
     }
 }

@@ -1,0 +1,64 @@
+"""What every object that is pushed into can do besides: copy, pickle, and a state that fits into JSON."""
+
+from __future__ import annotations
+
+from typing import Any, Self
+
+from .errors import ParameterError
+
+_SCHEMA = 1
+
+
+class Stream:
+    """Adds copies and stored states to a class of the core that has ``state()`` and ``restore()``."""
+
+    __slots__ = ()
+
+    def copy(self) -> Self:
+        """Return an independent object with the same content."""
+        twin = type(self)()
+        twin.__setstate__(self.__getstate__())
+        return twin
+
+    __copy__ = copy
+
+    def __deepcopy__(self, _memo: Any) -> Self:
+        return self.copy()
+
+    def __getstate__(self) -> tuple[list[int], list[float]]:
+        return self.state()  # type: ignore[attr-defined]
+
+    def __setstate__(self, state: tuple[list[int], list[float]]) -> None:
+        self.restore(*state)  # type: ignore[attr-defined]
+
+    def to_state(self) -> dict[str, Any]:
+        """Return everything as JSON values; Python's ``json`` keeps every bit of a float."""
+        integers, numbers = self.__getstate__()
+        # JSON has no infinity: limits that were never set are stored as words
+        plain = [v if abs(v) != float("inf") else ("inf" if v > 0 else "-inf") for v in numbers]
+        return {"schema": _SCHEMA, "kind": type(self).__name__, "integers": integers, "numbers": plain}
+
+    @classmethod
+    def from_state(cls, state: dict[str, Any]) -> Self:
+        """Return an object that goes on where the stored one stood.
+
+        Raises
+        ------
+        ParameterError
+            Not the state of an object of this class.
+        """
+        try:
+            known = (state["schema"], state["kind"]) == (_SCHEMA, cls.__name__)
+            integers, numbers = list(state["integers"]), [float(v) for v in state["numbers"]]
+        except (KeyError, TypeError, ValueError) as wrong:
+            raise ParameterError(f"state is not one of to_state() ({wrong!r})", "state", "Store it anew.") from None
+        if not known:
+            raise ParameterError(
+                f"state is of a {state['kind']}, schema {state['schema']}", "state", f"Give one of a {cls.__name__}."
+            )
+        made = cls()
+        try:
+            made.__setstate__((integers, numbers))
+        except (TypeError, OverflowError) as wrong:
+            raise ParameterError(f"state cannot be read: {wrong}", "state", "Store it anew.") from None
+        return made
