@@ -76,7 +76,8 @@ def test_nothing_is_named_where_nothing_is_hidden_and_the_result_draws_itself(tm
     runs = generated(m, 11)
     model = luztar.Model.steering(ratio=m.ratio, stiffness=m.stiffness)
     study = luztar.study(model, runs[:2], held_out=runs[2])
-    assert study.named == () and study.verdict == "nothing_missing"
+    # One test in twenty rejects by chance. What it may not do then is name.
+    assert study.named == () and study.verdict in ("nothing_missing", "below_practical_size")
     assert study.steps[0].fit.held_out_names == ("run2",)
     study.report(tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()

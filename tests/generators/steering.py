@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-
 # A body at rest is looked at this often: a hand of 1.5 Hz winds no spring up and lets it go again in between.
 SCANS_PER_S = 500
 # A thousandth of the noise that is added to a run.
