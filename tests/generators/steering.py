@@ -141,8 +141,8 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
             max_step=0.02,
         )
         out[inside & (times <= t + first)] = phi
-        reached = np.isin(times, solved.t)
-        out[reached] = solved.y[0]
+        if len(solved.t):
+            out[np.isin(times, solved.t)] = solved.y[0]
         if solved.status != 1:
             return out
         t, phi, speed = float(solved.t_events[0][0]), float(solved.y_events[0][0][0]), 0.0
