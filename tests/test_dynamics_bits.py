@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from luztar.dynamics import simulate, trace
+from luztar.dynamics import simulate, summarise, trace
 
 SCRIPT = """
 import hashlib, sys, numpy as np
@@ -83,3 +83,20 @@ def test_a_lane_without_curved_friction_keeps_its_bits_beside_one_with_it():
     a, b = (simulate(p, psi(), sample_rate_hz=500, substeps=2) for p in (plain, mixed))
     assert np.array_equal(a.roadwheel_rad[0], b.roadwheel_rad[0])
     assert not np.array_equal(a.roadwheel_rad[1], b.roadwheel_rad[1])
+
+
+def test_a_summary_is_that_of_the_samples_whatever_the_chunks(monkeypatch):
+    monkeypatch.setattr("luztar.dynamics.CHUNK", 77)
+    told = []
+    kept = summarise(
+        lanes(200), psi(), sample_rate_hz=500, substeps=2, progress=lambda done, of: told.append((done, of))
+    )
+    run = simulate(lanes(200), psi(), sample_rate_hz=500, substeps=2)
+    assert np.array_equal(kept["last_rad"], run.roadwheel_rad[:, -1])
+    assert np.array_equal(kept["last_speed_rad_s"], run.speed_rad_s[:, -1])
+    assert np.array_equal(kept["peak_rad"], np.abs(run.roadwheel_rad).max(axis=1))
+    assert np.array_equal(kept["at_rest_share"], np.mean(run.speed_rad_s == 0.0, axis=1))
+    # A sum of 1500 squares, each rounded once, in another order.
+    rms = np.sqrt(np.mean(run.roadwheel_rad**2, axis=1))
+    assert np.allclose(kept["rms_rad"], rms, rtol=1500 * np.finfo(float).eps, atol=0.0)
+    assert told == [(77, 200), (154, 200), (200, 200)]

@@ -40,6 +40,8 @@ __all__ = [
     "simulate_steering",
     "solve_block",
     "steering_parameters",
+    "steering_summary_names",
+    "summarise_steering",
     "theil_sen",
     "trace_steering",
 ]
@@ -445,6 +447,19 @@ def simulate_steering(
     width: str,
     phi: NDArray[np.float64],
     speed: NDArray[np.float64] | None,
+) -> None: ...
+def steering_summary_names() -> list[str]: ...
+def summarise_steering(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+    width: str,
+    out: NDArray[np.float64],
 ) -> None: ...
 def trace_steering(
     parameters: NDArray[np.float64],

@@ -1,7 +1,8 @@
 //! `luztar._core.simulate_steering`: free runs of the steering model, many parameter sets at once.
 
 use luztar::dynamics::{
-    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, Start, Width, simulate, trace,
+    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, SUMMARY, Start, Width, simulate, summarise,
+    trace,
 };
 use numpy::{
     IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
@@ -63,6 +64,48 @@ pub fn simulate_steering(
         None => &mut nothing,
     };
     py.detach(|| simulate(batch, &drive, phi, speed))
+        .map_err(CoreError)?;
+    Ok(())
+}
+
+/// The names of the columns of a summary.
+#[pyfunction]
+pub fn steering_summary_names() -> Vec<&'static str> {
+    SUMMARY.to_vec()
+}
+
+/// `out` (lanes, names), written.
+#[pyfunction]
+#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, width, out))]
+#[allow(clippy::too_many_arguments)]
+pub fn summarise_steering(
+    py: Python<'_>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    starts: PyReadonlyArray2<'_, f64>,
+    handwheel_rad: PyReadonlyArray1<'_, f64>,
+    load_nm: Option<PyReadonlyArray1<'_, f64>>,
+    sample_rate_hz: f64,
+    substeps: usize,
+    method: &str,
+    width: &str,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let bodies = bodies(&parameters)?;
+    let starts = self::starts(&starts)?;
+    let psi = handwheel_rad.as_slice()?;
+    let load = load_nm
+        .as_ref()
+        .map(PyReadonlyArray1::as_slice)
+        .transpose()?;
+    let drive = Drive::new(psi, load, sample_rate_hz, substeps).map_err(CoreError)?;
+    let batch = Batch {
+        bodies: &bodies,
+        starts: &starts,
+        kernel: kernel(method)?,
+        width: self::width(width)?,
+    };
+    let out = out.as_slice_mut()?;
+    py.detach(|| summarise(batch, &drive, out))
         .map_err(CoreError)?;
     Ok(())
 }

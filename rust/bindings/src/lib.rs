@@ -22,7 +22,10 @@ mod _core {
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
-    use crate::dynamics::{simulate_steering, steering_parameters, trace_steering};
+    use crate::dynamics::{
+        simulate_steering, steering_parameters, steering_summary_names, summarise_steering,
+        trace_steering,
+    };
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]

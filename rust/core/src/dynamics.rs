@@ -23,7 +23,7 @@ mod trace;
 
 pub use drive::Drive;
 pub use events::{Event, EventKind};
-pub use lanes::{Batch, Kernel, Start, Width, simulate};
+pub use lanes::{Batch, Kernel, SUMMARY, Start, Width, simulate, summarise};
 pub use ledger::Ledger;
 pub use number::Pure;
 pub use one_mass::{NAMES, OneMass, PARAMETERS};

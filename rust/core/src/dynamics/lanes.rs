@@ -9,6 +9,7 @@ use pulp::WithSimd;
 use rayon::prelude::*;
 
 use crate::Error;
+use crate::effects::Lane;
 
 use super::drive::{Drive, Span};
 use super::number::Pure;
@@ -92,40 +93,66 @@ pub fn simulate(
     phi: &mut [f64],
     speed: &mut [f64],
 ) -> Result<(), Error> {
-    let lanes = batch.bodies.len();
-    let samples = drive.samples();
-    check(batch, drive)?;
-    let length = |name, got: usize, wanted: usize| {
-        if got == wanted {
-            Ok(())
-        } else {
-            Err(Error::Length {
-                name,
-                expected: format!("{wanted} (lanes times samples)"),
-                got,
-            })
-        }
-    };
-    length("phi", phi.len(), lanes * samples)?;
+    let wanted = batch.bodies.len() * drive.samples();
+    length("phi", phi.len(), wanted)?;
     if !speed.is_empty() {
-        length("speed", speed.len(), lanes * samples)?;
+        length("speed", speed.len(), wanted)?;
     }
-    let block = block_for(lanes);
+    blocks(batch, drive, phi, speed, &mut [])
+}
+
+/// What [`summarise`] keeps of a lane.
+pub const SUMMARY: [&str; 5] = [
+    "last_rad",
+    "last_speed_rad_s",
+    "peak_rad",
+    "rms_rad",
+    "at_rest_share",
+];
+
+/// Runs every lane along a drive and keeps [`SUMMARY`] of its samples only: memory does not grow with the record.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn summarise(batch: Batch<'_>, drive: &Drive, out: &mut [f64]) -> Result<(), Error> {
+    length("summary", out.len(), batch.bodies.len() * SUMMARY.len())?;
+    blocks(batch, drive, &mut [], &mut [], out)
+}
+
+fn length(name: &'static str, got: usize, wanted: usize) -> Result<(), Error> {
+    if got == wanted {
+        return Ok(());
+    }
+    Err(Error::Length {
+        name,
+        expected: format!("{wanted}"),
+        got,
+    })
+}
+
+/// Cuts lanes and results into blocks and runs them over all threads. A result that nobody wants is empty.
+fn blocks(
+    batch: Batch<'_>,
+    drive: &Drive,
+    phi: &mut [f64],
+    speed: &mut [f64],
+    summary: &mut [f64],
+) -> Result<(), Error> {
+    check(batch, drive)?;
+    let block = block_for(batch.bodies.len());
+    let count = batch.bodies.len().div_ceil(block);
     let curved = batch.bodies.iter().any(OneMass::is_curved);
-    let per_block = block * samples;
-    // Without a place for the speeds every block gets an empty one.
-    let speeds: Vec<&mut [f64]> = if speed.is_empty() {
-        (0..lanes.div_ceil(block)).map(|_| &mut [][..]).collect()
-    } else {
-        speed.chunks_mut(per_block).collect()
-    };
-    phi.par_chunks_mut(per_block)
-        .zip(speeds)
+    let samples = drive.samples();
+    let places = cut(phi, block * samples, count)
+        .into_iter()
+        .zip(cut(speed, block * samples, count))
+        .zip(cut(summary, block * SUMMARY.len(), count));
+    let parts: Vec<Part<'_>> = places
         .enumerate()
-        .for_each(|(number, (phi, speed))| {
+        .map(|(number, ((phi, speed), summary))| {
             let first = number * block;
-            let last = (first + block).min(lanes);
-            let part = Part {
+            let last = (first + block).min(batch.bodies.len());
+            Part {
                 bodies: &batch.bodies[first..last],
                 starts: &batch.starts[first..last],
                 drive,
@@ -133,14 +160,25 @@ pub fn simulate(
                 curved,
                 phi,
                 speed,
-            };
-            match block {
-                SMALL => run(Task::<SMALL>(part), batch.width),
-                MEDIUM => run(Task::<MEDIUM>(part), batch.width),
-                _ => run(Task::<LARGE>(part), batch.width),
+                summary,
             }
-        });
+        })
+        .collect();
+    parts.into_par_iter().for_each(|part| match block {
+        SMALL => run(Task::<SMALL>(part), batch.width),
+        MEDIUM => run(Task::<MEDIUM>(part), batch.width),
+        _ => run(Task::<LARGE>(part), batch.width),
+    });
     Ok(())
+}
+
+/// The places of the blocks in a result; empty ones where the result is.
+fn cut(result: &mut [f64], size: usize, count: usize) -> Vec<&mut [f64]> {
+    if result.is_empty() {
+        (0..count).map(|_| &mut [][..]).collect()
+    } else {
+        result.chunks_mut(size).collect()
+    }
 }
 
 pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
@@ -216,6 +254,7 @@ struct Part<'a> {
     curved: bool,
     phi: &'a mut [f64],
     speed: &'a mut [f64],
+    summary: &'a mut [f64],
 }
 
 /// One block of `N` lanes.
@@ -279,13 +318,24 @@ impl<const N: usize> Task<'_, N> {
             kept[lane] = pace.kept.0;
             damped[lane] = pace.damped.0;
         }
+        let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
-            for lane in 0..=last {
-                part.phi[lane * samples + sample] = phi[lane];
+            if !part.phi.is_empty() {
+                for lane in 0..=last {
+                    part.phi[lane * samples + sample] = phi[lane];
+                }
             }
             if !part.speed.is_empty() {
                 for lane in 0..=last {
                     part.speed[lane * samples + sample] = v[lane];
+                }
+            }
+            if !part.summary.is_empty() {
+                for lane in 0..N {
+                    let size = Pure(phi[lane]).abs();
+                    peak[lane] = size.when(size.0 > peak[lane], Pure(peak[lane])).0;
+                    squares[lane] += phi[lane] * phi[lane];
+                    rest[lane] += Pure::ONE.when(v[lane] == 0.0, Pure::ZERO).0;
                 }
             }
             if sample + 1 == samples {
@@ -306,6 +356,16 @@ impl<const N: usize> Task<'_, N> {
                     v[lane] = next.speed.0;
                 }
             }
+        }
+        for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {
+            let n = samples as f64;
+            kept.copy_from_slice(&[
+                phi[lane],
+                v[lane],
+                peak[lane],
+                (squares[lane] / n).sqrt(),
+                rest[lane] / n,
+            ]);
         }
     }
 }
