@@ -141,7 +141,7 @@ fn blocks(
     check(batch, drive)?;
     let block = block_for(batch.bodies.len());
     let count = batch.bodies.len().div_ceil(block);
-    let curved = batch.bodies.iter().any(OneMass::is_curved);
+    let rich = batch.bodies.iter().any(OneMass::is_rich);
     let samples = drive.samples();
     let places = cut(phi, block * samples, count)
         .into_iter()
@@ -157,7 +157,7 @@ fn blocks(
                 starts: &batch.starts[first..last],
                 drive,
                 kernel: batch.kernel,
-                curved,
+                rich,
                 phi,
                 speed,
                 summary,
@@ -227,12 +227,12 @@ trait Advance {
     fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
 }
 
-struct Split<const CURVED: bool>;
+struct Split<const RICH: bool>;
 
-impl<const CURVED: bool> Advance for Split<CURVED> {
+impl<const RICH: bool> Advance for Split<RICH> {
     #[inline(always)]
     fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        split::step::<CURVED>(body, span, pace, phi, v)
+        split::step::<RICH>(body, span, pace, phi, v)
     }
 }
 
@@ -251,7 +251,7 @@ struct Part<'a> {
     starts: &'a [Start],
     drive: &'a Drive,
     kernel: Kernel,
-    curved: bool,
+    rich: bool,
     phi: &'a mut [f64],
     speed: &'a mut [f64],
     summary: &'a mut [f64],
@@ -285,7 +285,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.curved) {
+        match (self.0.kernel, self.0.rich) {
             (Kernel::Split, false) => self.along::<Split<false>>(),
             (Kernel::Split, true) => self.along::<Split<true>>(),
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),

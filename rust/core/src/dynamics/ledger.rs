@@ -46,8 +46,8 @@ impl Ledger {
         (first, last): ((Pure, Pure), (Pure, Pure)),
     ) {
         let mean = |a: Pure, b: Pure| 0.5 * (a.0 + b.0);
-        let turned = body.at_handwheel(first.0, phi);
-        let turned_last = body.at_handwheel(last.0, step.phi);
+        let turned = body.at_handwheel::<true>(first.0, phi);
+        let turned_last = body.at_handwheel::<true>(last.0, step.phi);
         let input = mean(turned, turned_last) * (last.0.0 - first.0.0);
         let loaded = mean(first.1, last.1) * (step.phi.0 - phi.0);
         // Until the speed is 0, and from the break-away on.
@@ -88,7 +88,7 @@ fn part(body: &OneMass<Pure>, seconds: f64, from: Pure, to: Pure, way: f64) -> [
     };
     let extra = |v: Pure| body.stribeck_torque(v, direction).0 * v.0;
     [
-        body.kinetic(direction).0 * way + along(&extra),
+        body.kinetic::<true>(direction).0 * way + along(&extra),
         along(&|v| body.linear(v).0 * v.0),
         along(&|v| (body.curved(v, direction).0 - body.stribeck_torque(v, direction).0) * v.0),
     ]

@@ -192,10 +192,15 @@ impl OneMass<f64> {
         ((self.ratio * self.ratio * tangent + self.aligning) / self.inertia).sqrt()
     }
 
-    /// Whether a term depends on the speed in another way than in proportion.
+    /// Whether anything beyond linear springs, a gap, viscous and symmetric dry friction acts. What does not act adds
+    /// exactly 0, so that leaving it out of the step changes no bit.
     #[must_use]
-    pub fn is_curved(&self) -> bool {
-        self.stribeck != 0.0 || self.drag != 0.0 || self.asymmetric_viscous != 0.0
+    pub fn is_rich(&self) -> bool {
+        self.stribeck != 0.0
+            || self.drag != 0.0
+            || self.asymmetric_viscous != 0.0
+            || self.asymmetric_coulomb != 0.0
+            || self.hardening != 0.0
     }
 }
 
@@ -225,19 +230,23 @@ impl OneMass<Pure> {
     /// The torque that springs and load put on the body.
     #[inline(always)]
     #[must_use]
-    pub fn torque(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
+    pub fn torque<const RICH: bool>(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
         let at_wheel = motion(phi, Pure::ZERO, Pure::ZERO);
-        self.ratio * self.at_handwheel(psi, phi) - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
+        self.ratio * self.at_handwheel::<RICH>(psi, phi)
+            - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
             + load
     }
 
     /// The torque that the spring asks of the handwheel.
     #[inline(always)]
     #[must_use]
-    pub fn at_handwheel(&self, psi: Pure, phi: Pure) -> Pure {
+    pub fn at_handwheel<const RICH: bool>(&self, psi: Pure, phi: Pure) -> Pure {
         let wound = motion(self.wound(psi, phi), Pure::ZERO, Pure::ZERO);
-        self.stiffness * one::<Stiffness>(&wound, 0.0)
-            + self.hardening * one::<Hardening>(&wound, 0.0)
+        let linear = self.stiffness * one::<Stiffness>(&wound, 0.0);
+        if !RICH {
+            return linear;
+        }
+        linear + self.hardening * one::<Hardening>(&wound, 0.0)
     }
 
     /// How far the spring at the handwheel is wound up, its gap taken off.
@@ -266,7 +275,10 @@ impl OneMass<Pure> {
     /// Dry friction while moving in a direction, without Stribeck's part.
     #[inline(always)]
     #[must_use]
-    pub fn kinetic(&self, direction: Pure) -> Pure {
+    pub fn kinetic<const RICH: bool>(&self, direction: Pure) -> Pure {
+        if !RICH {
+            return direction * self.coulomb;
+        }
         let moving = motion(Pure::ZERO, Pure::ZERO, direction);
         direction
             * (self.coulomb + self.asymmetric_coulomb * one::<AsymmetricCoulomb>(&moving, 0.0))
@@ -275,7 +287,10 @@ impl OneMass<Pure> {
     /// The largest torque on either side that friction holds at rest.
     #[inline(always)]
     #[must_use]
-    pub fn held(&self, direction: Pure) -> Pure {
+    pub fn held<const RICH: bool>(&self, direction: Pure) -> Pure {
+        if !RICH {
+            return self.coulomb + self.stiction;
+        }
         self.coulomb + direction * self.asymmetric_coulomb + self.stribeck + self.stiction
     }
 

@@ -57,7 +57,7 @@ impl Pace {
 
 /// One sub-step.
 #[inline(always)]
-pub(super) fn step<const CURVED: bool>(
+pub(super) fn step<const RICH: bool>(
     body: &OneMass<Pure>,
     span: &Span,
     pace: Pace,
@@ -74,10 +74,10 @@ pub(super) fn step<const CURVED: bool>(
     let s = v.sign();
     let phi_middle = phi + h * v * half;
     let (psi, load) = span.middle();
-    let torque = body.torque(psi, load, phi_middle);
-    let net = torque - body.kinetic(s);
+    let torque = body.torque::<RICH>(psi, load, phi_middle);
+    let net = torque - body.kinetic::<RICH>(s);
     let mut v1 = (v * kept + rate * net) * damped;
-    if CURVED {
+    if RICH {
         // What curves with speed: predicted at the speed of the start, then taken at the middle.
         let guess = v1 - rate * body.curved(v, s) * damped;
         v1 = v1 - rate * body.curved((v + guess) * half, s) * damped;
@@ -90,11 +90,11 @@ pub(super) fn step<const CURVED: bool>(
     let moving = (v / fall).when(!rested, Pure::ZERO);
     let phi_turn = phi + moving * h * v * half;
     let (psi, load) = span.at(moving);
-    let at_turn = body.torque(psi, load, phi_turn);
+    let at_turn = body.torque::<RICH>(psi, load, phi_turn);
     let (psi, load) = span.end();
-    let at_end = body.torque(psi, load, phi_turn);
-    let limit_turn = body.held(at_turn.sign());
-    let limit_end = body.held(at_end.sign());
+    let at_end = body.torque::<RICH>(psi, load, phi_turn);
+    let limit_turn = body.held::<RICH>(at_turn.sign());
+    let limit_end = body.held::<RICH>(at_end.sign());
     let breaks_now = at_turn.abs().0 > limit_turn.0;
     let breaks_later = !breaks_now & (at_end.abs().0 > limit_end.0);
     let rise = (at_end - at_turn).when(breaks_later, Pure::ONE);
@@ -106,10 +106,11 @@ pub(super) fn step<const CURVED: bool>(
     let way = at_turn.when(breaks_now, at_end);
     let direction = way.sign();
     let left = (Pure::ONE - moving) * (Pure::ONE - stuck) * h;
-    let mean = (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic(direction);
+    let mean =
+        (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic::<RICH>(direction);
     let slow = left / (body.inertia + left * body.linear(Pure::ONE) * half);
     let mut v2 = slow * mean;
-    if CURVED {
+    if RICH {
         let guess = v2 - slow * body.curved(Pure::ZERO, direction);
         v2 = v2 - slow * body.curved(guess * half, direction);
     }

@@ -40,7 +40,7 @@ pub fn trace(
         width: Width::Baseline,
     };
     check(batch, drive)?;
-    let curved = body.is_curved();
+    let rich = body.is_rich();
     let body = body.pure();
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
     let h = drive.step_s();
@@ -65,7 +65,7 @@ pub fn trace(
             let number = sample * drive.substeps() + sub;
             let span = drive.span(number);
             let time_s = number as f64 * h;
-            let step = match (kernel, curved) {
+            let step = match (kernel, rich) {
                 (Kernel::MoreauJean, _) => moreau::step(&body, &span, pace, phi, v),
                 (Kernel::Split, false) => split::step::<false>(&body, &span, pace, phi, v),
                 (Kernel::Split, true) => split::step::<true>(&body, &span, pace, phi, v),
