@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument("--each", type=int, default=40, help="tests per pair")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
-    print(f"{'hidden':<20}{'rival':<20}{'advised test':<28}{'named there':<28}named by the usual strokes")
+    print(f"{'hidden':<20}{'rival':<20}{'advised test':<28}{'named there':<30}named by the usual strokes")
     with ProcessPoolExecutor(options.workers) as pool:
         for rival, truth, values in PAIRS:
             trial = advised(rival, truth, values)
@@ -66,7 +66,7 @@ def main() -> None:
             for name in (trial, "usual strokes"):
                 cases = [(truth, values, rival, name, 100 + i) for i in range(options.each)]
                 rates.append(Rate(sum(pool.map(named, cases)), options.each))
-            print(f"{truth:<20}{rival:<20}{trial:<28}{rates[0]!s:<28}{rates[1]}", flush=True)
+            print(f"{truth:<20}{rival:<20}{trial:<28}{rates[0]!s:<30}{rates[1]}", flush=True)
 
 
 if __name__ == "__main__":
