@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from .errors import ModelError, ParameterError
 from .model.cards import card, cards
 from .model.model import Effect
+
+if TYPE_CHECKING:
+    from .planning.looks import Look
 
 
 def _class_name(name: str) -> str:
@@ -31,6 +35,13 @@ def _maker(name: str) -> Callable[..., Effect]:
 _MAKERS = {_class_name(c.name): c.name for c in cards() if not c.is_decoy}
 
 
+def look(effect: str) -> Look:
+    """Return what an effect looks like on a friction rig: torque over angle with and without it; see ``.figure()``."""
+    from .planning.looks import look
+
+    return look(effect)
+
+
 def __getattr__(name: str) -> Callable[..., Effect]:
     if name in _MAKERS:
         return _maker(_MAKERS[name])
@@ -40,4 +51,4 @@ def __getattr__(name: str) -> Callable[..., Effect]:
 
 
 def __dir__() -> list[str]:
-    return sorted(_MAKERS)
+    return sorted([*_MAKERS, "look"])

@@ -318,11 +318,14 @@ def simulate(
 @app.command()
 def explain(
     effect: Annotated[str | None, typer.Argument(metavar="EFFECT", help="An effect's name.")] = None,
+    report: Annotated[
+        str | None, typer.Option("--report", metavar="F.html", help="Write the card with its picture as an HTML page.")
+    ] = None,
     json: Json = False,
     debug: Debug = False,
 ) -> int:
     """Show the card of one effect, or the list."""
-    from .explain import card_text, list_text, listed
+    from .explain import card_text, list_text, listed, write_card
     from .output import say
 
     if effect is None:
@@ -332,6 +335,8 @@ def explain(
 
         found = card(effect.strip().lower().replace("-", "_").replace(" ", "_"))
         say({"schema": 1, **found.to_dict()} if json else card_text(found))
+        if report is not None:
+            write_card(report, found)
     return exits.DONE
 
 

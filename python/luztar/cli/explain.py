@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -62,3 +63,25 @@ def _bounds(low: float, high: float) -> str:
     if math.isinf(high):
         return f", at least {low:g}"
     return f", at most {high:g}" if math.isinf(low) else f", {low:g} to {high:g}"
+
+
+def write_card(path: str, card: Card) -> None:
+    """Write a card with the picture of its effect as one HTML page."""
+    from html import escape
+
+    from ..errors import ModelError
+    from ..planning.looks import look
+    from ..report.style import FONT
+    from .report import check_place, written
+
+    check_place(path)
+    try:
+        picture = look(card.name).figure().to_html(full_html=False, include_plotlyjs=True)
+    except ModelError as error:
+        picture = f"<p>{escape(str(error))}</p>"
+    page = (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(card.title)}</title></head>\n'
+        f'<body style="font-family:{FONT};margin:2em">\n'
+        f'<pre style="white-space:pre-wrap">{escape(card_text(card))}</pre>\n{picture}\n</body></html>\n'
+    )
+    written(path, lambda: Path(path).write_text(page, encoding="utf-8"))

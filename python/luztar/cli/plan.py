@@ -7,8 +7,8 @@ from typing import Any
 from ..errors import ParameterError
 from . import exits
 from .inputs import find_model
-from .output import say, tell
-from .report import check_place
+from .output import say
+from .report import check_place, written
 
 
 def run_plan(structure: str, speeds: str | None, json: bool, report: str | None, **options: Any) -> int:
@@ -32,12 +32,7 @@ def run_plan(structure: str, speeds: str | None, json: bool, report: str | None,
     given = {k: v for k, v in options.items() if v is not None}
     result = plan(find_model(structure, None, ()), speeds=_numbers(speeds), **given)
     if report is not None:
-        try:
-            result.report(report)
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise ParameterError(f"{report} cannot be written: {reason}", "--report", "Name another place.") from None
-        tell(f"report: {report}")
+        written(report, lambda: result.report(report))
     say(result.to_dict() if json else result)
     return exits.DONE
 

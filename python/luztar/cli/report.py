@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,8 +44,19 @@ def write(path: str, *, study: Any = None, check: Any = None) -> None:
     """
     from ..report import write_report
 
+    written(path, lambda: write_report(path, study=study, check=check))
+
+
+def written(path: str, make: Callable[[], object]) -> None:
+    """Let a page be written and say where it is.
+
+    Raises
+    ------
+    ParameterError
+        Where the file cannot be written.
+    """
     try:
-        write_report(path, study=study, check=check)
+        make()
     except OSError as error:
         reason = error.strerror or str(error)
         raise ParameterError(f"{path} cannot be written: {reason}", "--report", "Name another place.") from None

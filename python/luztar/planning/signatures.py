@@ -156,7 +156,7 @@ def signatures(
         usual = typical_inner(c, model, reach)
         for number, inner in enumerate([usual, *_thinned(inner_grid(c.name, model, runs))]):
             terms = base.having(c.name, inner)
-            more = [_added(r, terms, c, nominal, p) for r, p in zip(runs, plain, strict=True)]
+            more = [added(r, terms, c, nominal, p) for r, p in zip(runs, plain, strict=True)]
             width = more[0].shape[1]
             variant = Variant(c.name, inner, slice(place, place + width))
             place += width
@@ -208,7 +208,7 @@ def _thinned(points: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     return [points[i] for i in np.unique(np.linspace(0, len(points) - 1, MOST_POINTS).round().astype(int))]
 
 
-def _added(r: Prepared, terms: Terms, c: Card, nominal: np.ndarray, plain: np.ndarray) -> np.ndarray:
+def added(r: Prepared, terms: Terms, c: Card, nominal: np.ndarray, plain: np.ndarray) -> np.ndarray:
     """Return what an effect adds: its own columns, or the change of the modelled torque where it shapes the contact."""
     index = terms.effects.index(c.name)
     if not c.shapes_others:
