@@ -9,7 +9,7 @@ import pytest
 
 from command_line import luztar
 
-COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "explain")
+COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "simulate", "explain")
 
 OPTIONS = {
     "demo": "--out --json --debug",
@@ -20,6 +20,7 @@ OPTIONS = {
     "fit": "--model --add --map --unit --held-out --band --resample --json --debug",
     "plan": "--structure --encoder-deg --step-m --rate --speed --speeds --angle --travel-m --runs --strokes --minutes "
     "--noise --friction --json --report --debug",
+    "simulate": "--sine --seconds --rate --out --map --unit --resample --json --debug",
     "explain": "--json --debug",
 }
 

@@ -39,7 +39,10 @@ MAY_IMPORT = {
     "tb038": FOUNDATION | {"measurement", "signal", "stats", "regression"},
     "model": FOUNDATION,
     "effects": FOUNDATION | {"model"},
+    "dynamics": FOUNDATION,
+    "projections": FOUNDATION,
     "diagnosis": FOUNDATION | {"measurement", "model"},
+    "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model"},
     "planning": FOUNDATION | {"diagnosis", "measurement", "model"},
 }
 # Not even inside a function.
@@ -48,6 +51,7 @@ NEVER = {
     "tb038": {"diagnosis", "model", "cli", "app"},
     "model": {"diagnosis", "measurement", "report", "cli", "app", "tb038"},
     "diagnosis": {"cli", "app"},
+    "freerun": {"cli", "app", "report", "tb038"},
     "planning": {"cli", "app", "tb038"},
     "report": {"cli", "app"},
 }

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from . import effects as effects
     from . import measurement as measurement
     from . import model as model
+    from . import projections as projections
     from . import regression as regression
     from . import signal as signal
     from . import stats as stats
@@ -43,6 +44,7 @@ _LAZY: dict[str, str] = {
     "measurement": "measurement",
     "model": "model",
     "plan": "planning:plan",
+    "projections": "projections",
     "read": "measurement:read",
     "read_frame": "measurement:read_frame",
     "regression": "regression",

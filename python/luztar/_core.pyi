@@ -35,9 +35,15 @@ __all__ = [
     "moments_by_label",
     "moments_by_window",
     "normal_equations",
+    "project",
     "rolling",
+    "simulate_steering",
     "solve_block",
+    "steering_parameters",
+    "steering_summary_names",
+    "summarise_steering",
     "theil_sen",
+    "trace_steering",
 ]
 
 __version__: str
@@ -425,3 +431,54 @@ def solve_block(block: NDArray[np.float64], bound: float) -> NDArray[np.float64]
 def held_out(
     products: NDArray[np.float64], fold_of: Sequence[int], folds: int, bound: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+
+# dynamics
+
+def steering_parameters() -> list[str]: ...
+def simulate_steering(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+    width: str,
+    phi: NDArray[np.float64],
+    speed: NDArray[np.float64] | None,
+) -> None: ...
+def steering_summary_names() -> list[str]: ...
+def summarise_steering(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+    width: str,
+    out: NDArray[np.float64],
+) -> None: ...
+def trace_steering(
+    parameters: NDArray[np.float64],
+    start: tuple[float, float],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[float, str, float]], list[tuple[str, float]]]: ...
+
+# projections
+
+def project(
+    name: str,
+    x: NDArray[np.float64],
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    start: float,
+    out: NDArray[np.float64],
+) -> None: ...

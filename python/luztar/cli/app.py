@@ -285,6 +285,37 @@ def plan(
 
 
 @app.command()
+def simulate(
+    model: Annotated[str, typer.Argument(metavar="MODEL", help="A steering model with every parameter given.")],
+    runs: Annotated[
+        list[str] | None, typer.Argument(metavar="RUN", help="Run files: their handwheel drives the model.")
+    ] = None,
+    sine: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--sine", metavar="RAD HZ", help="Drive with a sine instead: amplitude and frequency."),
+    ] = None,
+    seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="Length of the sine.")] = 10.0,
+    rate: Annotated[float, typer.Option("--rate", metavar="HZ", help="Samples per second of the sine.")] = 500.0,
+    out: Annotated[
+        str | None,
+        typer.Option("--out", metavar="F.csv", help="Write the trajectory; numbered where there are several."),
+    ] = None,
+    map: Map = [],  # noqa: B006
+    unit: Unit = [],  # noqa: B006
+    resample: Resample = None,
+    json: Json = False,
+    debug: Debug = False,
+) -> int:
+    """Run a steering model: handwheel in, road wheel out.
+
+    Prints the events (stick, slip, reversal, contact, release) and where the energy went.
+    """
+    from .simulate import run_simulate
+
+    return run_simulate(model, runs or [], sine, seconds, rate, out, json, map, unit, resample)
+
+
+@app.command()
 def explain(
     effect: Annotated[str | None, typer.Argument(metavar="EFFECT", help="An effect's name.")] = None,
     report: Annotated[

@@ -8,7 +8,10 @@ import typer
 
 Files = Annotated[list[str], typer.Argument(metavar="RUN", help="Run files: CSV (also .gz), AB Dynamics text, MAT.")]
 ModelName = Annotated[
-    str, typer.Option("--model", metavar="M", help="A built-in structure (rig, axis) or a model file (TOML).")
+    str,
+    typer.Option(
+        "--model", metavar="M", help="A built-in structure (rig, axis) or a model file (TOML; also steering)."
+    ),
 ]
 Map = Annotated[
     list[str],
@@ -23,7 +26,9 @@ HeldOut = Annotated[
 ]
 Band = Annotated[
     float | None,
-    typer.Option("--band", metavar="HZ", help="Upper edge of the comparison. Default: 6 for rig, 40 for axis."),
+    typer.Option(
+        "--band", metavar="HZ", help="Upper edge of the comparison. Default: 6 for rig, 40 for axis; none for steering."
+    ),
 ]
 Resample = Annotated[
     float | None, typer.Option("--resample", metavar="HZ", help="Bring unevenly sampled runs to this rate.")

@@ -66,7 +66,8 @@ def _same_as(fitted: FreeFit, c: Card, solved: Solution) -> str | None:
     if c.name == "asymmetric_coulomb":
         return c.becomes
     if c.name == "stribeck":
-        top = max(float(np.abs(np.gradient(p, r.step_s)).max()) for p, r in zip(fitted.predicted, fitted.runs))
+        pairs = zip(fitted.predicted, fitted.runs, strict=True)
+        top = max(float(np.abs(np.gradient(p, r.step_s)).max()) for p, r in pairs)
         if solved.found["stribeck.speed_rad_s"] < SLOW_SHARE * top:
             return c.becomes
     return None

@@ -19,6 +19,8 @@ from .record import Record
 DAMPINGS = (0.03, 1.0, 30.0, 1000.0)
 FIRST_DAMPING = 1e-2
 LARGEST_DAMPING = 1e9
+# Two columns that are the same to rounding leave the normal equations singular without it.
+LEAST_DAMPING = 1e-10
 # A step that lowers the loss by less than this share is the last: with 10^4 samples a hundredth of what chance does.
 CONVERGED = 1e-6
 
@@ -71,9 +73,12 @@ def jacobian(data: Data, parameters: Parameters, values: np.ndarray) -> tuple[np
 
 def losses(data: Data, parameters: Parameters, values: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
     """Return the sum of squares of several value sets, shape (sets,); weights of shape (sets, samples) or none."""
-    squares = (data.measured - data.modelled(parameters, values)) ** 2
+    residual = data.measured - data.modelled(parameters, values)
+    lost = ~np.isfinite(residual).all(axis=1)
+    residual[lost] = 0.0
+    squares = residual**2
     total = squares.sum(axis=1) if weights is None else (squares * weights).sum(axis=1)
-    return np.where(np.isfinite(total), total, np.inf)
+    return np.where(lost, np.inf, total)
 
 
 def minimise(
@@ -150,9 +155,13 @@ def _trials(
     out = np.tile(values, (len(DAMPINGS), 1))
     if not free.any():
         return out
-    part = np.ix_(free, free)
-    size = np.maximum(np.diag(gram)[free], 1e-12 * max(float(np.diag(gram).max()), np.finfo(float).tiny))
+    # Every column is brought to length 1, so that the damping means the same for all of them; one without influence
+    # keeps a length of nothing and stays.
+    length = np.sqrt(np.maximum(np.diag(gram)[free], np.finfo(float).tiny))
+    normal = gram[np.ix_(free, free)] / np.outer(length, length)
     for j, factor in enumerate(DAMPINGS):
-        step = np.linalg.solve(gram[part] + damping * factor * np.diag(size), slope[free])
-        out[j, free] += step * parameters.scale[free]
+        step = np.linalg.solve(
+            normal + max(damping * factor, LEAST_DAMPING) * np.eye(length.size), slope[free] / length
+        )
+        out[j, free] += step / length * parameters.scale[free]
     return parameters.inside(out)

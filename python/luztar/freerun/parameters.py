@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -19,6 +18,15 @@ STEP_SHARE = 1e-3
 SENSOR_KEYS = ("delay.time_s", "offset.level_rad")
 # Free to have either sign, or bounded by another parameter, beyond what the card says.
 SCALE_SETTERS = ("steering.inertia_kg_m2", "steering.stiffness_nm_per_rad", "steering.aligning_nm_per_rad")
+
+
+# What must be above 0, and how far below its size the search goes. The size of the inertia belongs to an oscillation of
+# 6 Hz: a fiftieth of it to 42 Hz, beyond which an angle shows nothing of it and the simulation needs ever more steps.
+LEAST_SHARE: Mapping[str, float] = {
+    "steering.inertia_kg_m2": 0.02,
+    "steering.stiffness_nm_per_rad": 1e-3,
+    "stribeck.speed_rad_s": 1e-3,
+}
 
 
 @dataclass(frozen=True)
@@ -113,8 +121,8 @@ def parameters_of(model: Model, sizes: Mapping[str, float]) -> Parameters:
     for key in free:
         effect, _, name = key.partition(".")
         p = next(p for p in card(effect, model.structure_name).parameters if p.key == name)
-        positive = key in ("steering.inertia_kg_m2", "steering.stiffness_nm_per_rad", "stribeck.speed_rad_s")
-        least = 1e-3 * sizes[key] if positive else max(p.low, 0.0) if _one_sided(key) else p.low
+        share = LEAST_SHARE.get(key)
+        least = share * sizes[key] if share is not None else max(p.low, 0.0) if _one_sided(key) else p.low
         low.append(least)
         high.append(min(p.high, 1e3 * sizes[key]))
     scale = np.array([sizes[key] for key in free])
@@ -137,8 +145,3 @@ def step_of(parameters: Parameters, values: np.ndarray) -> np.ndarray:
     """Return the step of the numerical derivative per parameter, pointing inside the bounds."""
     step = STEP_SHARE * np.maximum(np.abs(values), parameters.scale)
     return np.where(values + step > parameters.high, -step, step)
-
-
-def is_positive(value: float) -> bool:
-    """Whether a value is a positive finite number."""
-    return math.isfinite(value) and value > 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,21 +14,33 @@ from .record import Record, substeps_for
 # A lane whose highest circular frequency times the step is above this is not simulated: it is no mechanism that the
 # record could show.
 STIFFEST = 1.0
+# The simulation allows a step times frequency of 2, however far the spring is wound up.
+LIMIT = 1.5
 # No road wheel turns further than its handwheel.
 FARTHEST = 1.0
 # The column is wound up by a part of the handwheel's angle; the rest turns the road wheel.
 WOUND_SHARE = 0.3
 
 
-def highest_rad_s(records: Sequence[Record], rows: np.ndarray) -> np.ndarray:
-    """Return the highest circular frequency of every row."""
-    names = _core.steering_parameters()
-    at = {name: i for i, name in enumerate(names)}
-    reach = max(float(np.abs(r.drive_rad).max()) for r in records)
-    bend = 3.0 * np.maximum(rows[:, at["hardening_nm_per_rad3"]], 0.0) * (WOUND_SHARE * reach) ** 2
+def highest_rad_s(rows: np.ndarray, wound_rad: float) -> np.ndarray:
+    """Return the highest circular frequency of every row, its spring wound up by so much."""
+    at = {name: i for i, name in enumerate(_core.steering_parameters())}
+    bend = 3.0 * np.maximum(rows[:, at["hardening_nm_per_rad3"]], 0.0) * wound_rad**2
     tangent = rows[:, at["stiffness_nm_per_rad"]] + bend
     springs = rows[:, at["ratio"]] ** 2 * tangent + rows[:, at["aligning_nm_per_rad"]]
     return np.asarray(np.sqrt(springs / rows[:, at["inertia_kg_m2"]]))
+
+
+def _steps(records: Sequence[Record], rows: np.ndarray) -> tuple[int, np.ndarray]:
+    """Return the sub-steps for a batch, and which of its rows are too stiff for them."""
+    reach = max(float(np.abs(r.drive_rad).max()) for r in records)
+    ratio = float(np.abs(rows[:, _core.steering_parameters().index("ratio")]).max())
+    farthest = reach + ratio * max(abs(r.start[0]) for r in records)
+    usual, worst = highest_rad_s(rows, WOUND_SHARE * reach), highest_rad_s(rows, farthest)
+    typical = int(np.argsort(usual)[len(usual) // 2])
+    slowest = min(r.rate_hz for r in records)
+    steps = max(substeps_for(records, float(usual[typical])), math.ceil(float(worst[typical]) / (slowest * LIMIT)))
+    return steps, ~((usual <= STIFFEST * slowest * steps) & (worst <= LIMIT * slowest * steps))
 
 
 def predict(parameters: Parameters, records: Sequence[Record], values: np.ndarray) -> list[np.ndarray]:
@@ -45,12 +58,11 @@ def predict(parameters: Parameters, records: Sequence[Record], values: np.ndarra
         One per run. A lane that cannot be simulated is infinite.
     """
     rows, sensors = parameters.rows(np.atleast_2d(values))
-    frequency = highest_rad_s(records, rows)
-    typical = float(np.median(frequency))
-    steps = substeps_for(records, typical)
-    slowest = min(r.rate_hz for r in records)
-    wild = ~(frequency <= STIFFEST * slowest * steps)
-    rows[wild] = rows[int(np.argmin(np.abs(frequency - typical)))]
+    steps, wild = _steps(records, rows)
+    if wild.all():
+        return [np.full((len(rows), r.drive_rad.size), np.inf) for r in records]
+    # In the place of those that cannot be simulated stands one that can.
+    rows[wild] = rows[int(np.argmin(wild))]
     out = []
     for r in records:
         phi = np.empty((len(rows), r.drive_rad.size))

@@ -137,6 +137,8 @@ def complete(problem: Problem, parameters: Parameters, values: np.ndarray, loss:
     else:
         fold_values = np.repeat(values[None, :], len(numbers), axis=0)
     modelled = data.modelled(parameters, fold_values)
+    # A fold whose parameters have no answer for what it has not seen predicts nothing.
+    modelled[~np.isfinite(modelled)] = 0.0
     unseen = data.measured - modelled[np.searchsorted(numbers, problem.fold), np.arange(data.measured.size)]
     by_stroke = np.array([float(np.sum(unseen[s] ** 2)) for s in problem.strokes])
     return Solution(parameters, values, loss, fold_values, unseen, by_stroke)

@@ -34,7 +34,8 @@ STRUCTURE_GRID: Mapping[str, tuple[float, ...]] = {
 
 def first_starts(parameters: Parameters) -> np.ndarray:
     """Return starts where nothing is known yet, shape (starts, free)."""
-    return _product(parameters, _from_model(parameters), STRUCTURE_GRID, dict(zip(parameters.free, parameters.scale)))
+    sizes = dict(zip(parameters.free, parameters.scale, strict=True))
+    return _product(parameters, _from_model(parameters), STRUCTURE_GRID, sizes)
 
 
 def starts_with(parameters: Parameters, found: Mapping[str, float], effect: str) -> np.ndarray:

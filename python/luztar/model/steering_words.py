@@ -39,7 +39,7 @@ WORDS: Mapping[str, Mapping[str, object]] = {
         "check": "Zero both sensors in the straight-ahead position.",
     },
     "coulomb": {
-        "look": "After every reversal of the handwheel the road wheel waits, then follows; slow motion goes in a staircase.",
+        "look": "After every reversal of the handwheel the road wheel waits, then follows; slow motion goes in stairs.",
         "cause": "Dry king-pins, joints, steering box set too tight.",
         "check": "Grease the king-pins; measure the torque to turn the lifted wheels.",
     },

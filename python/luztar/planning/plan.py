@@ -193,7 +193,10 @@ def plan(
     """
     if isinstance(model, str):
         model = {"rig": Model.rig, "axis": Model.axis}.get(model, lambda: Model(str(model), ()))()
+    if model.structure.is_free:
+        raise ParameterError(f"there is no plan for '{model.structure_name}'", "structure", "Plan a rig or an axis.")
     rig = model.structure_name == "rig"
+    assert model.band_hz is not None
     usual = USUAL[model.structure_name]
     unit = math.pi / 180.0 if rig else 1.0
     step = (encoder_deg * unit if encoder_deg is not None else usual["step"]) if rig else (step_m or usual["step"])

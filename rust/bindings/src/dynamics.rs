@@ -1,10 +1,24 @@
 //! `luztar._core.simulate_steering`: free runs of the steering model, many parameter sets at once.
 
-use luztar::dynamics::{Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, Start, Width, simulate};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
+use luztar::dynamics::{
+    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, SUMMARY, Start, Width, simulate, summarise,
+    trace,
+};
+use numpy::{
+    IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 use crate::error::CoreError;
+
+/// Angle, speed, events, energies.
+type TraceParts<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<(f64, &'static str, f64)>,
+    Vec<(&'static str, f64)>,
+);
 
 /// The names of the columns of `parameters`.
 #[pyfunction]
@@ -52,6 +66,110 @@ pub fn simulate_steering(
     py.detach(|| simulate(batch, &drive, phi, speed))
         .map_err(CoreError)?;
     Ok(())
+}
+
+/// The names of the columns of a summary.
+#[pyfunction]
+pub fn steering_summary_names() -> Vec<&'static str> {
+    SUMMARY.to_vec()
+}
+
+/// `out` (lanes, names), written.
+#[pyfunction]
+#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, width, out))]
+#[allow(clippy::too_many_arguments)]
+pub fn summarise_steering(
+    py: Python<'_>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    starts: PyReadonlyArray2<'_, f64>,
+    handwheel_rad: PyReadonlyArray1<'_, f64>,
+    load_nm: Option<PyReadonlyArray1<'_, f64>>,
+    sample_rate_hz: f64,
+    substeps: usize,
+    method: &str,
+    width: &str,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let bodies = bodies(&parameters)?;
+    let starts = self::starts(&starts)?;
+    let psi = handwheel_rad.as_slice()?;
+    let load = load_nm
+        .as_ref()
+        .map(PyReadonlyArray1::as_slice)
+        .transpose()?;
+    let drive = Drive::new(psi, load, sample_rate_hz, substeps).map_err(CoreError)?;
+    let batch = Batch {
+        bodies: &bodies,
+        starts: &starts,
+        kernel: kernel(method)?,
+        width: self::width(width)?,
+    };
+    let out = out.as_slice_mut()?;
+    py.detach(|| summarise(batch, &drive, out))
+        .map_err(CoreError)?;
+    Ok(())
+}
+
+/// One trajectory: (phi, speed, events as (time, kind, direction), energies by name).
+#[pyfunction]
+#[pyo3(signature = (parameters, start, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method))]
+#[allow(clippy::too_many_arguments)]
+pub fn trace_steering<'py>(
+    py: Python<'py>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    start: (f64, f64),
+    handwheel_rad: PyReadonlyArray1<'_, f64>,
+    load_nm: Option<PyReadonlyArray1<'_, f64>>,
+    sample_rate_hz: f64,
+    substeps: usize,
+    method: &str,
+) -> PyResult<TraceParts<'py>> {
+    let bodies = bodies(&parameters)?;
+    let [body] = bodies[..] else {
+        return Err(CoreError(luztar::Error::Length {
+            name: "parameters",
+            expected: "1 row".to_owned(),
+            got: bodies.len(),
+        })
+        .into());
+    };
+    let psi = handwheel_rad.as_slice()?;
+    let load = load_nm
+        .as_ref()
+        .map(PyReadonlyArray1::as_slice)
+        .transpose()?;
+    let drive = Drive::new(psi, load, sample_rate_hz, substeps).map_err(CoreError)?;
+    let kernel = kernel(method)?;
+    let start = Start {
+        phi: start.0,
+        speed: start.1,
+    };
+    let made = py
+        .detach(|| trace(&body, start, kernel, &drive))
+        .map_err(CoreError)?;
+    let events = made
+        .events
+        .iter()
+        .map(|e| (e.time_s, e.kind.word(), e.direction))
+        .collect();
+    let l = made.ledger;
+    let energies = vec![
+        ("handwheel", l.handwheel),
+        ("load", l.load),
+        ("stored_first", l.stored_first),
+        ("stored_last", l.stored_last),
+        ("dry", l.dry),
+        ("viscous", l.viscous),
+        ("curved", l.curved),
+        ("turnover", l.turnover),
+        ("residual", l.residual()),
+    ];
+    Ok((
+        made.phi.into_pyarray(py),
+        made.speed.into_pyarray(py),
+        events,
+        energies,
+    ))
 }
 
 fn bodies(parameters: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<OneMass<f64>>> {

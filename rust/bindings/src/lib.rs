@@ -7,6 +7,7 @@ mod driven;
 mod dynamics;
 mod effects;
 mod error;
+mod projections;
 mod regression;
 mod signal;
 mod stats;
@@ -21,9 +22,14 @@ mod _core {
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
-    use crate::dynamics::{simulate_steering, steering_parameters};
+    use crate::dynamics::{
+        simulate_steering, steering_parameters, steering_summary_names, summarise_steering,
+        trace_steering,
+    };
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::projections::project;
     #[pymodule_export]
     use crate::regression::{
         LineSums, LinearSums, PolynomialSums, Recursive, RollingLine, RollingPolynomial, fit_line,

@@ -30,6 +30,27 @@ pub fn play(y: f64, x: f64, radius: f64) -> f64 {
     y + luz(x - y, radius)
 }
 
+/// tar, the inverse of luz: `x + a Sgn(x)`, an interval at 0. Returns its lower and upper end.
+#[must_use]
+pub fn tar(x: f64, a: f64) -> (f64, f64) {
+    let low = if x > 0.0 { x + a } else { x - a };
+    let high = if x < 0.0 { x - a } else { x + a };
+    (low, high)
+}
+
+/// The resolvent of a friction whose levels differ: the y with `y + S(y) = x`, where S is `up` for y > 0, `-down` for
+/// y < 0 and anything between at 0.
+#[must_use]
+pub fn asymmetric(x: f64, up: f64, down: f64) -> f64 {
+    (x - up).max(0.0) + (x + down).min(0.0)
+}
+
+/// The resolvent of quadratic drag: the y with `y + c |y| y = x`, for `c >= 0`.
+#[must_use]
+pub fn drag(x: f64, c: f64) -> f64 {
+    2.0 * x / (1.0 + (1.0 + 4.0 * c * x.abs()).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::{luz, play, stop};

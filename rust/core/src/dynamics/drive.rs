@@ -45,6 +45,12 @@ impl Span {
         (self.psi.at(share), self.load.at(share))
     }
 
+    /// Angle and load at the start.
+    #[inline(always)]
+    pub fn start(&self) -> (Pure, Pure) {
+        (self.psi.start, self.load.start)
+    }
+
     /// Angle and load in the middle.
     #[inline(always)]
     pub fn middle(&self) -> (Pure, Pure) {

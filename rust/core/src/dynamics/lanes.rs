@@ -9,10 +9,12 @@ use pulp::WithSimd;
 use rayon::prelude::*;
 
 use crate::Error;
+use crate::effects::Lane;
 
 use super::drive::{Drive, Span};
 use super::number::Pure;
 use super::one_mass::{OneMass, PARAMETERS};
+use super::split::Pace;
 use super::{moreau, split};
 
 /// How a step is made.
@@ -46,10 +48,24 @@ pub enum Width {
     Avx512,
 }
 
-/// Lanes of a block: their states stay in the first-level cache.
-const BLOCK: usize = 64;
-/// Few lanes, as in a fit of few parameters, take small blocks, so that none runs empty.
-const SMALL_BLOCK: usize = 8;
+/// Lanes of a block where there are many: their states stay in the first-level cache.
+const LARGE: usize = 64;
+/// Smaller ones keep every thread busy where there are few: four vectors of the widest kind, or one.
+const MEDIUM: usize = 32;
+/// See [`MEDIUM`].
+const SMALL: usize = 8;
+
+/// The block that gives every thread something to do and no lane too many.
+fn block_for(lanes: usize) -> usize {
+    let threads = rayon::current_num_threads();
+    if lanes <= SMALL * threads {
+        SMALL
+    } else if lanes <= 2 * MEDIUM * threads {
+        MEDIUM
+    } else {
+        LARGE
+    }
+}
 
 /// What to simulate.
 #[derive(Debug, Clone, Copy)]
@@ -77,73 +93,92 @@ pub fn simulate(
     phi: &mut [f64],
     speed: &mut [f64],
 ) -> Result<(), Error> {
-    let lanes = batch.bodies.len();
-    let samples = drive.samples();
-    check(batch, drive)?;
-    let length = |name, got: usize, wanted: usize| {
-        if got == wanted {
-            Ok(())
-        } else {
-            Err(Error::Length {
-                name,
-                expected: format!("{wanted} (lanes times samples)"),
-                got,
-            })
-        }
-    };
-    length("phi", phi.len(), lanes * samples)?;
+    let wanted = batch.bodies.len() * drive.samples();
+    length("phi", phi.len(), wanted)?;
     if !speed.is_empty() {
-        length("speed", speed.len(), lanes * samples)?;
+        length("speed", speed.len(), wanted)?;
     }
-    let block = if lanes <= SMALL_BLOCK {
-        SMALL_BLOCK
-    } else {
-        BLOCK
-    };
-    let curved = batch.bodies.iter().any(OneMass::is_curved);
-    let per_block = block * samples;
-    // Without a place for the speeds every block gets an empty one.
-    let speeds: Vec<&mut [f64]> = if speed.is_empty() {
-        (0..lanes.div_ceil(block)).map(|_| &mut [][..]).collect()
-    } else {
-        speed.chunks_mut(per_block).collect()
-    };
-    phi.par_chunks_mut(per_block)
-        .zip(speeds)
+    blocks(batch, drive, phi, speed, &mut [])
+}
+
+/// What [`summarise`] keeps of a lane.
+pub const SUMMARY: [&str; 5] = [
+    "last_rad",
+    "last_speed_rad_s",
+    "peak_rad",
+    "rms_rad",
+    "at_rest_share",
+];
+
+/// Runs every lane along a drive and keeps [`SUMMARY`] of its samples only: memory does not grow with the record.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn summarise(batch: Batch<'_>, drive: &Drive, out: &mut [f64]) -> Result<(), Error> {
+    length("summary", out.len(), batch.bodies.len() * SUMMARY.len())?;
+    blocks(batch, drive, &mut [], &mut [], out)
+}
+
+fn length(name: &'static str, got: usize, wanted: usize) -> Result<(), Error> {
+    if got == wanted {
+        return Ok(());
+    }
+    Err(Error::Length {
+        name,
+        expected: format!("{wanted}"),
+        got,
+    })
+}
+
+/// Cuts lanes and results into blocks and runs them over all threads. A result that nobody wants is empty.
+fn blocks(
+    batch: Batch<'_>,
+    drive: &Drive,
+    phi: &mut [f64],
+    speed: &mut [f64],
+    summary: &mut [f64],
+) -> Result<(), Error> {
+    check(batch, drive)?;
+    let block = block_for(batch.bodies.len());
+    let count = batch.bodies.len().div_ceil(block);
+    let rich = batch.bodies.iter().any(OneMass::is_rich);
+    let samples = drive.samples();
+    let places = cut(phi, block * samples, count)
+        .into_iter()
+        .zip(cut(speed, block * samples, count))
+        .zip(cut(summary, block * SUMMARY.len(), count));
+    let parts: Vec<Part<'_>> = places
         .enumerate()
-        .for_each(|(number, (phi, speed))| {
+        .map(|(number, ((phi, speed), summary))| {
             let first = number * block;
-            let last = (first + block).min(lanes);
-            let (bodies, starts) = (&batch.bodies[first..last], &batch.starts[first..last]);
-            if block == SMALL_BLOCK {
-                run(
-                    Task::<SMALL_BLOCK> {
-                        bodies,
-                        starts,
-                        drive,
-                        kernel: batch.kernel,
-                        curved,
-                        phi,
-                        speed,
-                    },
-                    batch.width,
-                );
-            } else {
-                run(
-                    Task::<BLOCK> {
-                        bodies,
-                        starts,
-                        drive,
-                        kernel: batch.kernel,
-                        curved,
-                        phi,
-                        speed,
-                    },
-                    batch.width,
-                );
+            let last = (first + block).min(batch.bodies.len());
+            Part {
+                bodies: &batch.bodies[first..last],
+                starts: &batch.starts[first..last],
+                drive,
+                kernel: batch.kernel,
+                rich,
+                phi,
+                speed,
+                summary,
             }
-        });
+        })
+        .collect();
+    parts.into_par_iter().for_each(|part| match block {
+        SMALL => run(Task::<SMALL>(part), batch.width),
+        MEDIUM => run(Task::<MEDIUM>(part), batch.width),
+        _ => run(Task::<LARGE>(part), batch.width),
+    });
     Ok(())
+}
+
+/// The places of the blocks in a result; empty ones where the result is.
+fn cut(result: &mut [f64], size: usize, count: usize) -> Vec<&mut [f64]> {
+    if result.is_empty() {
+        (0..count).map(|_| &mut [][..]).collect()
+    } else {
+        result.chunks_mut(size).collect()
+    }
 }
 
 pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
@@ -189,15 +224,15 @@ pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
 /// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
 /// code for the instruction set.
 trait Advance {
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step;
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
 }
 
-struct Split<const CURVED: bool>;
+struct Split<const RICH: bool>;
 
-impl<const CURVED: bool> Advance for Split<CURVED> {
+impl<const RICH: bool> Advance for Split<RICH> {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
-        split::step::<CURVED>(body, span, h, phi, v)
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
+        split::step::<RICH>(body, span, pace, phi, v)
     }
 }
 
@@ -205,21 +240,25 @@ struct MoreauJean;
 
 impl Advance for MoreauJean {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> split::Step {
-        moreau::step(body, span, h, phi, v)
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
+        moreau::step(body, span, pace, phi, v)
     }
 }
 
-/// One block of lanes.
-struct Task<'a, const N: usize> {
+/// What a block works on.
+struct Part<'a> {
     bodies: &'a [OneMass<f64>],
     starts: &'a [Start],
     drive: &'a Drive,
     kernel: Kernel,
-    curved: bool,
+    rich: bool,
     phi: &'a mut [f64],
     speed: &'a mut [f64],
+    summary: &'a mut [f64],
 }
+
+/// One block of `N` lanes.
+struct Task<'a, const N: usize>(Part<'a>);
 
 /// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
 fn run<const N: usize>(task: Task<'_, N>, width: Width) {
@@ -246,7 +285,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.kernel, self.curved) {
+        match (self.0.kernel, self.0.rich) {
             (Kernel::Split, false) => self.along::<Split<false>>(),
             (Kernel::Split, true) => self.along::<Split<true>>(),
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
@@ -257,41 +296,76 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 impl<const N: usize> Task<'_, N> {
     #[inline(always)]
     fn along<A: Advance>(self) {
-        let last = self.bodies.len() - 1;
+        let part = self.0;
+        let last = part.bodies.len() - 1;
         // Lanes beyond the last repeat it, so that every block is full.
         let mut table = [[0.0; N]; PARAMETERS];
         let (mut phi, mut v) = ([0.0; N], [0.0; N]);
         for lane in 0..N {
             let of = lane.min(last);
-            for (row, value) in table.iter_mut().zip(self.bodies[of].to_array()) {
+            for (row, value) in table.iter_mut().zip(part.bodies[of].to_array()) {
                 row[lane] = value;
             }
-            phi[lane] = self.starts[of].phi;
-            v[lane] = self.starts[of].speed;
+            phi[lane] = part.starts[of].phi;
+            v[lane] = part.starts[of].speed;
         }
-        let samples = self.drive.samples();
-        let h = Pure(self.drive.step_s());
+        let samples = part.drive.samples();
+        let h = Pure(part.drive.step_s());
+        let (mut rate, mut kept, mut damped) = ([0.0; N], [0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let pace = Pace::of(&OneMass::gather(&table, lane), h);
+            rate[lane] = pace.rate.0;
+            kept[lane] = pace.kept.0;
+            damped[lane] = pace.damped.0;
+        }
+        let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
-            for lane in 0..=last {
-                self.phi[lane * samples + sample] = phi[lane];
-            }
-            if !self.speed.is_empty() {
+            if !part.phi.is_empty() {
                 for lane in 0..=last {
-                    self.speed[lane * samples + sample] = v[lane];
+                    part.phi[lane * samples + sample] = phi[lane];
+                }
+            }
+            if !part.speed.is_empty() {
+                for lane in 0..=last {
+                    part.speed[lane * samples + sample] = v[lane];
+                }
+            }
+            if !part.summary.is_empty() {
+                for lane in 0..N {
+                    let size = Pure(phi[lane]).abs();
+                    peak[lane] = size.when(size.0 > peak[lane], Pure(peak[lane])).0;
+                    squares[lane] += phi[lane] * phi[lane];
+                    rest[lane] += Pure::ONE.when(v[lane] == 0.0, Pure::ZERO).0;
                 }
             }
             if sample + 1 == samples {
                 break;
             }
-            for sub in 0..self.drive.substeps() {
-                let span = self.drive.span(sample * self.drive.substeps() + sub);
+            for sub in 0..part.drive.substeps() {
+                let span = part.drive.span(sample * part.drive.substeps() + sub);
                 for lane in 0..N {
                     let body = OneMass::gather(&table, lane);
-                    let next = A::step(&body, &span, h, Pure(phi[lane]), Pure(v[lane]));
+                    let pace = Pace {
+                        h,
+                        rate: Pure(rate[lane]),
+                        kept: Pure(kept[lane]),
+                        damped: Pure(damped[lane]),
+                    };
+                    let next = A::step(&body, &span, pace, Pure(phi[lane]), Pure(v[lane]));
                     phi[lane] = next.phi.0;
                     v[lane] = next.speed.0;
                 }
             }
+        }
+        for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {
+            let n = samples as f64;
+            kept.copy_from_slice(&[
+                phi[lane],
+                v[lane],
+                peak[lane],
+                (squares[lane] / n).sqrt(),
+                rest[lane] / n,
+            ]);
         }
     }
 }

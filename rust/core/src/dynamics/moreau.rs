@@ -6,22 +6,22 @@
 use super::drive::Span;
 use super::number::Pure;
 use super::one_mass::OneMass;
-use super::split::Step;
+use super::split::{Pace, Step};
 
 /// One sub-step of length `h`.
 #[inline(always)]
-pub(super) fn step(body: &OneMass<Pure>, span: &Span, h: Pure, phi: Pure, v: Pure) -> Step {
-    let rate = h / body.inertia;
+pub(super) fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
+    let Pace { h, rate, .. } = pace;
     let (psi, load) = span.end();
-    let torque = body.torque(psi, load, phi);
+    let torque = body.torque::<true>(psi, load, phi);
     let s = v.sign();
     let free = v + rate * (torque - body.curved(v, s));
     // The resolvent of friction whose levels differ: soft threshold with one width on each side.
-    let up = free - rate * body.kinetic(Pure::ONE);
-    let down = free - rate * body.kinetic(-Pure::ONE);
+    let up = free - rate * body.kinetic::<true>(Pure::ONE);
+    let down = free - rate * body.kinetic::<true>(-Pure::ONE);
     let slipped = up.when(up.0 > 0.0, down.when(down.0 < 0.0, Pure::ZERO));
     let next = slipped / (Pure::ONE + rate * body.linear(Pure::ONE));
-    let holds = (v.0 == 0.0) & (torque.abs_at_most(body.held(torque.sign())));
+    let holds = (v.0 == 0.0) & (torque.abs_at_most(body.held::<true>(torque.sign())));
     let speed = Pure::ZERO.when(holds, next);
     let phi_next = phi + h * speed;
     Step {

@@ -100,8 +100,8 @@ const ROUNDING: f64 = 6_755_399_441_055_744.0;
 const EXPONENT_SHIFT: u32 = 52;
 const EXPONENT_BIAS: i64 = 1023;
 // ln 2 in two parts: the first has 20 trailing zero bits, so that its product with a whole number below 2^20 is exact.
-const LN2_HIGH: f64 = 0.693_147_180_369_123_816_490;
-const LN2_LOW: f64 = 1.908_214_929_270_587_700_02e-10;
+const LN2_HIGH: f64 = 0.693_147_180_369_123_8;
+const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
 impl Lane for Pure {
     #[inline(always)]
@@ -141,10 +141,10 @@ impl Lane for Pure {
             sum = sum * r + 1.0 / divisor;
         }
         // The low bits of the rounded sum hold the whole number.
-        let bits = (whole.to_bits() as i64)
-            .wrapping_sub(ROUNDING.to_bits() as i64)
+        let bits = (whole.to_bits().cast_signed())
+            .wrapping_sub(ROUNDING.to_bits().cast_signed())
             .wrapping_add(EXPONENT_BIAS);
-        let scale = f64::from_bits((bits << EXPONENT_SHIFT) as u64);
+        let scale = f64::from_bits((bits << EXPONENT_SHIFT).cast_unsigned());
         Self(sum * scale).when(self.0 >= -708.0, Self::ZERO)
     }
 

@@ -192,10 +192,15 @@ impl OneMass<f64> {
         ((self.ratio * self.ratio * tangent + self.aligning) / self.inertia).sqrt()
     }
 
-    /// Whether a term depends on the speed in another way than in proportion.
+    /// Whether anything beyond linear springs, a gap, viscous and symmetric dry friction acts. What does not act adds
+    /// exactly 0, so that leaving it out of the step changes no bit.
     #[must_use]
-    pub fn is_curved(&self) -> bool {
-        self.stribeck != 0.0 || self.drag != 0.0 || self.asymmetric_viscous != 0.0
+    pub fn is_rich(&self) -> bool {
+        self.stribeck != 0.0
+            || self.drag != 0.0
+            || self.asymmetric_viscous != 0.0
+            || self.asymmetric_coulomb != 0.0
+            || self.hardening != 0.0
     }
 }
 
@@ -224,18 +229,56 @@ impl OneMass<Pure> {
 
     /// The torque that springs and load put on the body.
     #[inline(always)]
-    pub fn torque(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
-        let wound = luz(psi - self.ratio * phi, self.gap * Pure(0.5));
-        let at_spring = motion(wound, Pure::ZERO, Pure::ZERO);
+    #[must_use]
+    pub fn torque<const RICH: bool>(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
         let at_wheel = motion(phi, Pure::ZERO, Pure::ZERO);
-        let spring = self.stiffness * one::<Stiffness>(&at_spring, 0.0)
-            + self.hardening * one::<Hardening>(&at_spring, 0.0);
-        self.ratio * spring - self.aligning * one::<Stiffness>(&at_wheel, 0.0) + load
+        self.ratio * self.at_handwheel::<RICH>(psi, phi)
+            - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
+            + load
+    }
+
+    /// The torque that the spring asks of the handwheel.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_handwheel<const RICH: bool>(&self, psi: Pure, phi: Pure) -> Pure {
+        let wound = motion(self.wound(psi, phi), Pure::ZERO, Pure::ZERO);
+        let linear = self.stiffness * one::<Stiffness>(&wound, 0.0);
+        if !RICH {
+            return linear;
+        }
+        linear + self.hardening * one::<Hardening>(&wound, 0.0)
+    }
+
+    /// How far the spring at the handwheel is wound up, its gap taken off.
+    #[inline(always)]
+    fn wound(&self, psi: Pure, phi: Pure) -> Pure {
+        luz(psi - self.ratio * phi, self.gap * Pure(0.5))
+    }
+
+    /// Energy of motion and springs.
+    #[must_use]
+    pub fn stored(&self, psi: Pure, phi: Pure, v: Pure) -> Pure {
+        let wound = self.wound(psi, phi);
+        let square = wound * wound;
+        Pure(0.5) * (self.inertia * v * v + self.stiffness * square + self.aligning * phi * phi)
+            + Pure(0.25) * self.hardening * square * square
+    }
+
+    /// Stribeck's part of dry friction.
+    #[inline(always)]
+    #[must_use]
+    pub fn stribeck_torque(&self, speed: Pure, direction: Pure) -> Pure {
+        let moving = motion(Pure::ZERO, speed, direction);
+        direction * self.stribeck * one::<Stribeck>(&moving, self.stribeck_speed.0)
     }
 
     /// Dry friction while moving in a direction, without Stribeck's part.
     #[inline(always)]
-    pub fn kinetic(&self, direction: Pure) -> Pure {
+    #[must_use]
+    pub fn kinetic<const RICH: bool>(&self, direction: Pure) -> Pure {
+        if !RICH {
+            return direction * self.coulomb;
+        }
         let moving = motion(Pure::ZERO, Pure::ZERO, direction);
         direction
             * (self.coulomb + self.asymmetric_coulomb * one::<AsymmetricCoulomb>(&moving, 0.0))
@@ -243,21 +286,27 @@ impl OneMass<Pure> {
 
     /// The largest torque on either side that friction holds at rest.
     #[inline(always)]
-    pub fn held(&self, direction: Pure) -> Pure {
+    #[must_use]
+    pub fn held<const RICH: bool>(&self, direction: Pure) -> Pure {
+        if !RICH {
+            return self.coulomb + self.stiction;
+        }
         self.coulomb + direction * self.asymmetric_coulomb + self.stribeck + self.stiction
     }
 
     /// The torque of what depends on the speed in a curved way: Stribeck's part, drag, one-sided viscous friction.
     #[inline(always)]
+    #[must_use]
     pub fn curved(&self, speed: Pure, direction: Pure) -> Pure {
         let moving = motion(Pure::ZERO, speed, direction);
-        direction * self.stribeck * one::<Stribeck>(&moving, self.stribeck_speed.0)
+        self.stribeck_torque(speed, direction)
             + self.asymmetric_viscous * one::<AsymmetricViscous>(&moving, 0.0)
             + self.drag * one::<Drag>(&moving, 0.0)
     }
 
     /// The viscous torque.
     #[inline(always)]
+    #[must_use]
     pub fn linear(&self, speed: Pure) -> Pure {
         self.viscous * one::<Viscous>(&motion(Pure::ZERO, speed, Pure::ZERO), 0.0)
     }

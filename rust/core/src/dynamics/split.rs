@@ -27,28 +27,60 @@ pub(super) struct Step {
     pub speed_turn: Pure,
 }
 
-/// One sub-step of length `h`.
+/// What a lane's step of fixed length needs of its body: divisions that are made once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// Seconds of the step.
+    pub h: Pure,
+    /// Step over inertia.
+    pub rate: Pure,
+    /// `1 - k`, k half the share of the speed that viscous friction takes in a step.
+    pub kept: Pure,
+    /// `1 / (1 + k)`.
+    pub damped: Pure,
+}
+
+impl Pace {
+    /// The pace of a body.
+    #[inline(always)]
+    pub fn of(body: &OneMass<Pure>, h: Pure) -> Self {
+        let rate = h / body.inertia;
+        let k = rate * body.linear(Pure::ONE) * Pure(0.5);
+        Self {
+            h,
+            rate,
+            kept: Pure::ONE - k,
+            damped: Pure::ONE / (Pure::ONE + k),
+        }
+    }
+}
+
+/// One sub-step.
 #[inline(always)]
-pub(super) fn step<const CURVED: bool>(
+pub(super) fn step<const RICH: bool>(
     body: &OneMass<Pure>,
     span: &Span,
-    h: Pure,
+    pace: Pace,
     phi: Pure,
     v: Pure,
 ) -> Step {
     let half = Pure(0.5);
+    let Pace {
+        h,
+        rate,
+        kept,
+        damped,
+    } = pace;
     let s = v.sign();
     let phi_middle = phi + h * v * half;
     let (psi, load) = span.middle();
-    let torque = body.torque(psi, load, phi_middle);
-    let k = h * body.linear(Pure::ONE) * half / body.inertia;
-    let rate = h / body.inertia;
-    let net = torque - body.kinetic(s);
-    let mut v1 = (v * (Pure::ONE - k) + rate * net) / (Pure::ONE + k);
-    if CURVED {
+    let torque = body.torque::<RICH>(psi, load, phi_middle);
+    let net = torque - body.kinetic::<RICH>(s);
+    let mut v1 = (v * kept + rate * net) * damped;
+    if RICH {
         // What curves with speed: predicted at the speed of the start, then taken at the middle.
-        let guess = v1 - rate * body.curved(v, s) / (Pure::ONE + k);
-        v1 = v1 - rate * body.curved((v + guess) * half, s) / (Pure::ONE + k);
+        let guess = v1 - rate * body.curved(v, s) * damped;
+        v1 = v1 - rate * body.curved((v + guess) * half, s) * damped;
     }
     let event = (v1 * v).0 <= 0.0;
     let rested = v.0 == 0.0;
@@ -58,11 +90,11 @@ pub(super) fn step<const CURVED: bool>(
     let moving = (v / fall).when(!rested, Pure::ZERO);
     let phi_turn = phi + moving * h * v * half;
     let (psi, load) = span.at(moving);
-    let at_turn = body.torque(psi, load, phi_turn);
+    let at_turn = body.torque::<RICH>(psi, load, phi_turn);
     let (psi, load) = span.end();
-    let at_end = body.torque(psi, load, phi_turn);
-    let limit_turn = body.held(at_turn.sign());
-    let limit_end = body.held(at_end.sign());
+    let at_end = body.torque::<RICH>(psi, load, phi_turn);
+    let limit_turn = body.held::<RICH>(at_turn.sign());
+    let limit_end = body.held::<RICH>(at_end.sign());
     let breaks_now = at_turn.abs().0 > limit_turn.0;
     let breaks_later = !breaks_now & (at_end.abs().0 > limit_end.0);
     let rise = (at_end - at_turn).when(breaks_later, Pure::ONE);
@@ -74,12 +106,13 @@ pub(super) fn step<const CURVED: bool>(
     let way = at_turn.when(breaks_now, at_end);
     let direction = way.sign();
     let left = (Pure::ONE - moving) * (Pure::ONE - stuck) * h;
-    let mean = (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic(direction);
-    let damped = body.inertia + left * body.linear(Pure::ONE) * half;
-    let mut v2 = left * mean / damped;
-    if CURVED {
-        let guess = v2 - left * body.curved(Pure::ZERO, direction) / damped;
-        v2 = v2 - left * body.curved(guess * half, direction) / damped;
+    let mean =
+        (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic::<RICH>(direction);
+    let slow = left / (body.inertia + left * body.linear(Pure::ONE) * half);
+    let mut v2 = slow * mean;
+    if RICH {
+        let guess = v2 - slow * body.curved(Pure::ZERO, direction);
+        v2 = v2 - slow * body.curved(guess * half, direction);
     }
     let v2 = Pure::ZERO.when((v2 * way).0 <= 0.0, v2);
 

@@ -1,0 +1,70 @@
+"""luztar simulate, as a user types it."""
+
+import numpy as np
+import pytest
+
+from command_line import luztar
+
+MODEL = """schema = 1
+structure = "steering"
+effects = ["viscous", "coulomb", "freeplay"]
+[known]
+inertia = 3.0
+ratio = 16.0
+stiffness = 60.0
+viscous.coefficient_nm_s_per_rad = 40.0
+coulomb.level_nm = 8.1
+freeplay.gap_rad = 0.1
+"""
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL)
+    return path
+
+
+def test_a_sine_gives_a_trajectory_its_events_and_its_energies(model, tmp_path):
+    done = luztar("simulate", model, "--sine", 1, 0.5, "--seconds", 4, "--out", tmp_path / "out.csv", "--json")
+    assert done.code == 0, done.err
+    (run,) = done.json["runs"]
+    assert run["balanced"] and run["samples"] == 2001
+    kinds = {e["kind"] for e in run["events"]}
+    assert {"stick", "slip", "contact", "release"} <= kinds
+    energy = run["energy_j"]
+    spent = energy["dry"] + energy["viscous"] + energy["stored_last"] - energy["stored_first"]
+    assert energy["handwheel"] == pytest.approx(spent, rel=1e-3)
+    table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
+    assert table["roadwheel_rad"].max() == pytest.approx(run["roadwheel_max_rad"], rel=1e-8)
+
+
+def test_the_handwheel_of_a_run_drives_the_model(model, tmp_path):
+    t = np.arange(1000) / 250
+    rows = np.column_stack([t, np.sin(2 * t)])
+    np.savetxt(tmp_path / "hand.csv", rows, delimiter=",", header="time_s,handwheel_rad", comments="")
+    done = luztar("simulate", model, tmp_path / "hand.csv")
+    assert done.code == 0, done.err
+    assert done.out.startswith("hand.csv: 1 trajectory of 3.996 s") and "energy: handwheel" in done.out
+
+
+@pytest.mark.parametrize(
+    ("words", "word"),
+    [
+        ((), "runs or a sine"),
+        (("--sine", "1", "-1"), "no sine"),
+        (("--sine", "1", "200"), "too slow"),
+        (("--sine", "1", "1", "--seconds", "0"), "--seconds"),
+        (("--sine", "1", "1", "--out", "nowhere/out.csv"), "no folder"),
+    ],
+)
+def test_what_makes_no_drive_is_refused_by_name(model, words, word):
+    done = luztar("simulate", model, *words)
+    assert done.code == 3 and word in done.err
+
+
+def test_a_model_that_is_not_whole_is_refused(model):
+    model.write_text(MODEL.replace("inertia = 3.0\n", ""))
+    done = luztar("simulate", model, "--sine", 1, 1)
+    assert done.code == 3 and "steering.inertia_kg_m2" in done.err
+    assert luztar("simulate", "rig", "--sine", 1, 1).code == 3
