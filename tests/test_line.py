@@ -244,3 +244,13 @@ def test_line_is_frozen_and_becomes_a_dictionary() -> None:
     assert fit.to_dict()["slope"] == 2.0 and list(fit.to_dict())[:2] == ["slope", "intercept"]
     with pytest.raises(AttributeError):
         fit.slope = 1.0
+
+
+def test_a_point_of_weight_zero_is_no_observation():
+    with_it = regression.line([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 4.0, 5.0], [1.0, 1.0, 1.0, 0.0])
+    without = regression.line([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])
+    assert (with_it.n, with_it.slope, with_it.slope_se) == (
+        3,
+        without.slope,
+        pytest.approx(without.slope_se, rel=1e-14),
+    )

@@ -126,7 +126,13 @@ def _turned(study: Study) -> list[str]:
 def study_text(study: Study) -> str:
     """Return a study as text."""
     lines = ["unseen error, step by step:", *ladder_lines(study)]
-    lines.append(verdict_sentence(study.verdict, study.last.named, study.model.structure_name))
+    sentence = verdict_sentence(study.verdict, study.last.named, study.model.structure_name)
+    if study.named and study.verdict == "below_practical_size":
+        beside = " and ".join(card(n, study.model.structure_name).title for n in study.named)
+        sentence = (
+            f"Beside {beside} something may be left, but this test can neither name it nor show a gain worth having."
+        )
+    lines.append(sentence)
     for s in study.steps:
         if s.next_experiment and len(s.set) > 1:
             lines.append(f"next: {s.next_experiment.text}")

@@ -133,6 +133,9 @@ def _smallest(table: Signatures, sensor: Sensor, name: str) -> Smallest:
             told = max(size, TOLD_ERRORS / left)
     else:
         size = _crossing(table, c, variant, errors)
+    if c.becomes and not c.inner:
+        # Whatever its value, the data show it as the simpler one: a test never sees it for itself.
+        size = told = None
     return Smallest(name, main.key, main.unit, size, inner, rival, cosine, told)
 
 

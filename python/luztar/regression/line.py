@@ -121,7 +121,7 @@ def line(x: Any, y: Any, weights: Any = None) -> Line:
     x, y : array_like, shape (n,), any units
         n >= 2, finite, of magnitude up to 1e150; x must vary.
     weights : array_like, shape (n,), optional
-        Inverse variances up to a common factor, 0 or above.
+        Inverse variances up to a common factor, 0 or above; a point of weight 0 is no observation.
 
     Returns
     -------

@@ -87,7 +87,7 @@ def linear(x: Any, y: Any, weights: Any = None, *, intercept: bool = True) -> Li
     y : array_like, shape (n,)
         n at least the number of coefficients.
     weights : array_like, shape (n,), optional
-        Inverse variances up to a common factor, 0 or above.
+        Inverse variances up to a common factor, 0 or above; a point of weight 0 is no observation.
     intercept : bool
         Whether there is a constant term.
 

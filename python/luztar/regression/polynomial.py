@@ -101,7 +101,7 @@ def polynomial(x: Any, y: Any, degree: int, weights: Any = None) -> PolynomialFi
     degree : int
         0 to 30.
     weights : array_like, shape (n,), optional
-        Inverse variances up to a common factor, 0 or above.
+        Inverse variances up to a common factor, 0 or above; a point of weight 0 is no observation.
 
     Raises
     ------

@@ -56,14 +56,13 @@ impl Kernel for Weighted<'_> {
         let origin = (x[0], y[0]);
         let [weight, sx, sy] = sums::<P, _, 3, 3>([x, y, w], &Distances { origin });
         if weight <= 0.0 {
-            return Sums {
-                count: x.len() as u64,
-                ..Sums::default()
-            };
+            return Sums::default();
         }
         let mean = (sx / weight, sy / weight);
         let products: [f64; 5] = sums::<P, _, 3, 5>([x, y, w], &Products { origin, mean });
-        assemble(x.len(), weight, origin, mean, products)
+        // A point without weight is no observation.
+        let count = w.iter().filter(|w| **w > 0.0).count();
+        assemble(count, weight, origin, mean, products)
     }
 }
 

@@ -164,7 +164,8 @@ impl LinearSums {
         } else {
             self.triangle.push(relative, root);
         }
-        self.count += 1;
+        // A row without weight is no observation.
+        self.count += u64::from(weight > 0.0);
         self.weight += weight;
     }
 
