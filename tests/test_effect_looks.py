@@ -57,7 +57,6 @@ def test_a_card_is_written_with_its_picture(tmp_path):
 
 def test_the_page_of_effects_is_what_the_cards_say():
     place = TOP / "docs" / "pictures" / "effects.py"
-    pytest.importorskip("matplotlib")
     spec = importlib.util.spec_from_file_location("draw_effects", place)
     drawer = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(drawer)

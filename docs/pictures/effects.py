@@ -1,21 +1,17 @@
 """Draws effects.png and writes effects.md: the loop of every effect and its card (`python docs/pictures/effects.py`).
 
-Needs matplotlib.
+The pictures need matplotlib.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 
 from luztar.errors import ModelError
 from luztar.model import Card, cards
 from luztar.planning.looks import Look, look
-
-mpl.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402
 
 HERE = Path(__file__).parent
 COLUMNS = 4
@@ -43,6 +39,11 @@ def looks() -> list[Look]:
 
 def draw(found: list[Look]) -> None:
     """Write the small multiples."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
     rows = -(-len(found) // COLUMNS)
     figure, axes = plt.subplots(rows, COLUMNS, figsize=(10.5, 1.9 * rows), sharex=True)
     for axis in axes.flat[len(found) :]:

@@ -19,12 +19,6 @@ WORDS: Mapping[str, Mapping[str, str]] = {
         "Stribeck friction, its extra is negative.",
         "check": "Compare three even speeds before anything is regreased; look for a motor that is still energised.",
     },
-    "stiction": {
-        "look": "A dip at every start, gone once the motion is under way.",
-        "cause": "A channel that is late or smoothed; no contact slips more easily from rest, and the extra is "
-        "negative.",
-        "check": "Record both channels with the same filter; look for a soft mount that follows before it slips.",
-    },
     "tight_spot": {
         "look": "The loop narrows at one place, inward on both sides.",
         "cause": "Wear or lost preload at this place; the extra is negative.",
