@@ -68,15 +68,17 @@ VERDICT_TEXT = {
 }
 
 
-def verdict_sentence(verdict: str, named: Sequence[str], structure: str = "rig") -> str:
-    """Return the verdict as a sentence."""
+def verdict_sentence(verdict: str, named: Sequence[str], structure: str = "rig", why: str = "") -> str:
+    """Return the verdict as a sentence; ``why`` is the judgement's reason."""
+    if verdict == "unexplained" and "equally well" in why:
+        return "Something is missing, and more effects explain it than this test can tell apart: none is named."
     titles = " or ".join(f"{card(n, structure).title} ({n})" for n in named)
     return VERDICT_TEXT[verdict].format(named=titles)
 
 
 def diagnosis_text(look: Diagnosis) -> str:
     """Return a diagnosis as text."""
-    lines = [verdict_sentence(look.verdict, look.named, look.fit.model.structure_name)]
+    lines = [verdict_sentence(look.verdict, look.named, look.fit.model.structure_name, look.judgement.why)]
     if look.judgement.why:
         lines.append(f"({look.judgement.why})")
     lines += [error_line(look.fit), *flag_lines(look.fit.flags), *_where(look.where), "candidates by unseen error:"]
@@ -126,7 +128,8 @@ def _turned(study: Study) -> list[str]:
 def study_text(study: Study) -> str:
     """Return a study as text."""
     lines = ["unseen error, step by step:", *ladder_lines(study)]
-    sentence = verdict_sentence(study.verdict, study.last.named, study.model.structure_name)
+    why = study.last.judgement.why
+    sentence = verdict_sentence(study.verdict, study.last.named, study.model.structure_name, why)
     if study.named and study.verdict == "below_practical_size":
         beside = " and ".join(card(n, study.model.structure_name).title for n in study.named)
         sentence = (
