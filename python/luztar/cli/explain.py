@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import textwrap
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def write_card(path: str, card: Card) -> None:
 
     from ..errors import ModelError
     from ..planning.looks import look
-    from ..report.style import FONT
+    from ..report.leaf import write_leaf
     from .report import check_place, written
 
     check_place(path)
@@ -79,9 +78,4 @@ def write_card(path: str, card: Card) -> None:
         picture = look(card.name).figure().to_html(full_html=False, include_plotlyjs=True)
     except ModelError as error:
         picture = f"<p>{escape(str(error))}</p>"
-    page = (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(card.title)}</title></head>\n'
-        f'<body style="font-family:{FONT};margin:2em">\n'
-        f'<pre style="white-space:pre-wrap">{escape(card_text(card))}</pre>\n{picture}\n</body></html>\n'
-    )
-    written(path, lambda: Path(path).write_text(page, encoding="utf-8"))
+    written(path, lambda: write_leaf(path, card.title, card_text(card), picture))

@@ -135,7 +135,7 @@ def _without_needless(loop: Loop, fitted: Fit, added: list[str]) -> tuple[Fit, l
     An effect may have stood in for others that were added later; what is left must each earn its place.
     """
     while len(added) > 1:
-        trials = [(name, loop.fit(fitted.model - name)) for name in added if not _needed(fitted.model, name)]
+        trials = [(name, loop.fit(fitted.model - name)) for name in added if not needed(fitted.model, name)]
         for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
             share, errors = gain(without.search, fitted.search)
             worth = beyond_the_law(without.search, fitted.search, loop.explained(without))
@@ -159,7 +159,7 @@ def _simplest(
     improved = len(added) > 1
     while improved:
         improved = False
-        for name in (n for n in added if not _needed(fitted.model, n)):
+        for name in (n for n in added if not needed(fitted.model, n)):
             for other in offered.get(name, ()):
                 if other == name or other in fitted.model.effects:
                     continue
@@ -182,7 +182,7 @@ def _each_in_its_place(
     """Look again for every effect with the others in place: a better one replaces it, equal ones join its set."""
     offered: dict[str, tuple[str, ...]] = {}
     for name in list(added):
-        if _needed(fitted.model, name):
+        if needed(fitted.model, name):
             offered[name] = (name,)
             continue
         without = loop.fit(fitted.model - name)
@@ -221,7 +221,7 @@ def _ladder(
     return steps
 
 
-def _needed(model: Model, name: str) -> bool:
+def needed(model: Model, name: str) -> bool:
     """Whether another effect of the model makes no sense without this one."""
     return any(card(e, model.structure_name).needs == name for e in model.effects)
 

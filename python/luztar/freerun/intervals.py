@@ -7,13 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..diagnosis.intervals import Estimate, student
+from ..diagnosis.intervals import COLLINEAR_SHARE, Estimate, student
 from ..model import card
 from .least_squares import Data, jacobian
 from .parameters import Parameters, keys_of
-
-# As for driven fits: where the others explain all but this share of a column's length, the data cannot tell it.
-COLLINEAR_SHARE = 0.01
 
 
 def stroke_slices(data: Data) -> list[slice]:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..diagnosis.candidates import PRACTICAL_GAIN, SET_ERRORS
+from ..diagnosis.climb import MAX_EFFECTS, needed
 from ..diagnosis.floor import NoiseFloor
-from ..diagnosis.study import MAX_EFFECTS, Step, Study
+from ..diagnosis.step import Step
+from ..diagnosis.study import Study
 from ..model import Model, card
 from .candidates import gain
 from .diagnose import FreeDiagnosis, diagnose
@@ -72,8 +74,7 @@ def _without_needless(loop: _Loop, fitted: FreeFit, added: list[str]) -> tuple[F
     """Drop every effect without which the unseen error is no worse: it stood in for one that was added later."""
     while len(added) > 1:
         model, found = fitted.model, fitted.solution.found
-        free = [n for n in added if not any(card(e, model.structure_name).needs == n for e in model.effects)]
-        trials = [(n, solve_from(loop.problem, model - n, found)) for n in free]
+        trials = [(n, solve_from(loop.problem, model - n, found)) for n in added if not needed(model, n)]
         for name, without in sorted(trials, key=lambda t: t[1].held_out_loss):
             share, errors = gain(without, fitted.solution)
             if share < PRACTICAL_GAIN or errors < SET_ERRORS:

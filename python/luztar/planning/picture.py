@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..model import card
@@ -55,12 +53,7 @@ def write(path: str | os.PathLike[str], plan: Plan) -> None:
         An existing file is replaced.
     plan : Plan
     """
-    from ..report.style import FONT
+    from ..report.leaf import write_leaf
 
     picture = plan.figure().to_html(full_html=False, include_plotlyjs=True)
-    page = (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>luztar plan</title></head>\n'
-        f'<body style="font-family:{FONT};margin:2em">\n<h1>Plan of a test</h1>\n'
-        f'<pre style="white-space:pre-wrap">{escape(str(plan))}</pre>\n{picture}\n</body></html>\n'
-    )
-    Path(path).write_text(page, encoding="utf-8")
+    write_leaf(path, "Plan of a test", str(plan), picture)
