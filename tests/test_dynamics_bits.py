@@ -86,7 +86,7 @@ def test_a_lane_without_curved_friction_keeps_its_bits_beside_one_with_it():
 
 
 def test_a_summary_is_that_of_the_samples_whatever_the_chunks(monkeypatch):
-    monkeypatch.setattr("luztar.dynamics.CHUNK", 77)
+    monkeypatch.setattr("luztar.dynamics.batch.CHUNK", 77)
     told = []
     kept = summarise(
         lanes(200), psi(), sample_rate_hz=500, substeps=2, progress=lambda done, of: told.append((done, of))

@@ -1,0 +1,15 @@
+"""Free runs of the steering model: handwheel angle in, motion out, many parameter sets at once.
+
+The model is the seed paper's equation (5): one mass at the road wheel, driven through ratio, column spring and freeplay
+by the handwheel, braked by dry and viscous friction. At rest the speed is exactly 0: nothing creeps and nothing
+chatters.
+"""
+
+from .lanes import COLUMNS as COLUMNS
+from .lanes import METHODS as METHODS
+from .batch import simulate as simulate
+from .batch import summarise as summarise
+from .trace import trace as trace
+from .trajectory import Event as Event
+from .trajectory import Trace as Trace
+from .trajectory import Trajectory as Trajectory

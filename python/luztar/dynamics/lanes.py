@@ -1,0 +1,96 @@
+"""Many parameter sets at the door of the core: rows of columns, starts, rates, methods."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._arrays import number
+from ..errors import ParameterError
+
+# Key as in model files and JSON: column of the core.
+COLUMNS: Mapping[str, str] = MappingProxyType(
+    {
+        "steering.inertia_kg_m2": "inertia_kg_m2",
+        "steering.ratio": "ratio",
+        "steering.stiffness_nm_per_rad": "stiffness_nm_per_rad",
+        "steering.aligning_nm_per_rad": "aligning_nm_per_rad",
+        "freeplay.gap_rad": "gap_rad",
+        "hardening.coefficient_nm_per_rad3": "hardening_nm_per_rad3",
+        "viscous.coefficient_nm_s_per_rad": "viscous_nm_s_per_rad",
+        "asymmetric_viscous.difference_nm_s_per_rad": "asymmetric_viscous_nm_s_per_rad",
+        "drag.coefficient_nm_s2_per_rad2": "drag_nm_s2_per_rad2",
+        "coulomb.level_nm": "coulomb_nm",
+        "asymmetric_coulomb.difference_nm": "asymmetric_coulomb_nm",
+        "stribeck.extra_nm": "stribeck_nm",
+        "stribeck.speed_rad_s": "stribeck_speed_rad_s",
+        "stiction.extra_nm": "stiction_nm",
+    }
+)
+METHODS = ("split", "moreau_jean")
+
+
+def table(parameters: Mapping[str, Any]) -> tuple[np.ndarray, bool]:
+    """Return parameters as rows of the core's columns, and whether they are many.
+
+    Raises
+    ------
+    ParameterError
+        Names the parameter.
+    """
+    names = _core.steering_parameters()
+    values: dict[str, np.ndarray] = {}
+    for key, value in parameters.items():
+        if key not in COLUMNS:
+            raise ParameterError(f"there is no parameter '{key}'", "parameters", f"Known are: {', '.join(COLUMNS)}.")
+        try:
+            array = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ParameterError(f"{key} is {value!r}", key, "Give a number, or one per lane.") from None
+        if array.ndim > 1:
+            raise ParameterError(f"{key} has the shape {array.shape}", key, "Give a number, or one per lane.")
+        values[COLUMNS[key]] = array
+    for needed in ("steering.inertia_kg_m2", "steering.ratio", "steering.stiffness_nm_per_rad"):
+        if COLUMNS[needed] not in values:
+            raise ParameterError(f"{needed} is missing", "parameters", "Give inertia, ratio and stiffness.")
+    sizes = {key: a.size for key, a in values.items() if a.ndim == 1}
+    lanes = max(sizes.values(), default=1)
+    for key, size in sizes.items():
+        if size != lanes:
+            raise ParameterError(f"{key} has {size} values, others {lanes}", key, "Give one value per lane.")
+    if lanes == 0:
+        raise ParameterError("there are no lanes", "parameters", "Give at least one value.")
+    rows = np.zeros((lanes, len(names)))
+    for i, name in enumerate(names):
+        rows[:, i] = values.get(name, 0.0)
+    return rows, bool(sizes)
+
+
+def rate(sample_rate_hz: Any) -> float:
+    """Return a sample rate that is positive and finite."""
+    value = number("sample_rate_hz", sample_rate_hz)
+    if not (math.isfinite(value) and value > 0.0):
+        raise ParameterError(f"sample_rate_hz is {value}", "sample_rate_hz", "Give a positive number of Hz.")
+    return value
+
+
+def check_method(method: str) -> None:
+    """Refuse a method that is not there."""
+    if method not in METHODS:
+        raise ParameterError(f"there is no method {method!r}", "method", f"Known are: {', '.join(METHODS)}.")
+
+
+def starts(lanes: int, angle_rad: Any, speed_rad_s: Any) -> np.ndarray:
+    """Return angle and speed at the start, one row per lane."""
+    rows = np.zeros((lanes, 2))
+    for column, (name, value) in enumerate((("start_rad", angle_rad), ("start_speed_rad_s", speed_rad_s))):
+        array = np.asarray(value, dtype=np.float64)
+        if array.ndim > 1 or array.size not in (1, lanes):
+            raise ParameterError(f"{name} has the shape {array.shape}", name, "Give a number, or one per lane.")
+        rows[:, column] = array
+    return rows
