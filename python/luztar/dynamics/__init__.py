@@ -5,10 +5,10 @@ by the handwheel, braked by dry and viscous friction. At rest the speed is exact
 chatters.
 """
 
-from .lanes import COLUMNS as COLUMNS
-from .lanes import METHODS as METHODS
 from .batch import simulate as simulate
 from .batch import summarise as summarise
+from .lanes import COLUMNS as COLUMNS
+from .lanes import METHODS as METHODS
 from .trace import trace as trace
 from .trajectory import Event as Event
 from .trajectory import Trace as Trace
