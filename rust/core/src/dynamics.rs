@@ -15,6 +15,7 @@ mod drive;
 mod events;
 mod lanes;
 mod ledger;
+mod march;
 mod moreau;
 mod number;
 mod one_mass;

@@ -11,11 +11,10 @@ use rayon::prelude::*;
 use crate::Error;
 use crate::effects::Lane;
 
-use super::drive::{Drive, Span};
+use super::drive::Drive;
+use super::march::{Advance, Lanes, MoreauJean, Split};
 use super::number::Pure;
 use super::one_mass::{OneMass, PARAMETERS};
-use super::split::Pace;
-use super::{moreau, split};
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -221,30 +220,6 @@ pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
     Ok(())
 }
 
-/// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
-/// code for the instruction set.
-trait Advance {
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
-}
-
-struct Split<const RICH: bool>;
-
-impl<const RICH: bool> Advance for Split<RICH> {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        split::step::<RICH>(body, span, pace, phi, v)
-    }
-}
-
-struct MoreauJean;
-
-impl Advance for MoreauJean {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        moreau::step(body, span, pace, phi, v)
-    }
-}
-
 /// What a block works on.
 struct Part<'a> {
     bodies: &'a [OneMass<f64>],
@@ -310,14 +285,7 @@ impl<const N: usize> Task<'_, N> {
             v[lane] = part.starts[of].speed;
         }
         let samples = part.drive.samples();
-        let h = Pure(part.drive.step_s());
-        let (mut rate, mut kept, mut damped) = ([0.0; N], [0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let pace = Pace::of(&OneMass::gather(&table, lane), h);
-            rate[lane] = pace.rate.0;
-            kept[lane] = pace.kept.0;
-            damped[lane] = pace.damped.0;
-        }
+        let lanes = Lanes::new(&table, Pure(part.drive.step_s()));
         let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
             if !part.phi.is_empty() {
@@ -343,18 +311,7 @@ impl<const N: usize> Task<'_, N> {
             }
             for sub in 0..part.drive.substeps() {
                 let span = part.drive.span(sample * part.drive.substeps() + sub);
-                for lane in 0..N {
-                    let body = OneMass::gather(&table, lane);
-                    let pace = Pace {
-                        h,
-                        rate: Pure(rate[lane]),
-                        kept: Pure(kept[lane]),
-                        damped: Pure(damped[lane]),
-                    };
-                    let next = A::step(&body, &span, pace, Pure(phi[lane]), Pure(v[lane]));
-                    phi[lane] = next.phi.0;
-                    v[lane] = next.speed.0;
-                }
+                A::advance(&lanes, &span, &mut phi, &mut v);
             }
         }
         for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {

@@ -55,6 +55,68 @@ impl Pace {
     }
 }
 
+/// A step in which the speed keeps its sign.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Glide {
+    /// Angle at the end.
+    pub phi: Pure,
+    /// Speed at the end.
+    pub speed: Pure,
+    /// Whether the speed does not keep its sign, or was 0: then the rest of [`step`] decides.
+    pub event: bool,
+}
+
+/// One sub-step under the assumption that the speed keeps its sign; says whether it does.
+#[inline(always)]
+pub(super) fn glide<const RICH: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    phi: Pure,
+    v: Pure,
+) -> Glide {
+    let half = Pure(0.5);
+    let Pace {
+        h,
+        rate,
+        kept,
+        damped,
+    } = pace;
+    let s = v.sign();
+    let middle = phi + h * v * half;
+    let (psi, load) = span.middle();
+    let torque = body.torque::<RICH>(psi, load, middle);
+    let net = torque - body.kinetic::<RICH>(s);
+    let mut speed = (v * kept + rate * net) * damped;
+    if RICH {
+        // What curves with speed: predicted at the speed of the start, then taken at the middle.
+        let guess = speed - rate * body.curved(v, s) * damped;
+        speed = speed - rate * body.curved((v + guess) * half, s) * damped;
+    }
+    Glide {
+        phi: middle + h * speed * half,
+        speed,
+        event: (speed * v).0 <= 0.0,
+    }
+}
+
+/// Whether a body at rest stays there for the whole sub-step. [`step`] then ends at `phi + 0`, at a speed of 0.
+#[inline(always)]
+pub(super) fn stays<const RICH: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    phi: Pure,
+    v: Pure,
+) -> bool {
+    let (psi, load) = span.start();
+    let at_start = body.torque::<RICH>(psi, load, phi);
+    let (psi, load) = span.end();
+    let at_end = body.torque::<RICH>(psi, load, phi);
+    (v.0 == 0.0)
+        & at_start.abs_at_most(body.held::<RICH>(at_start.sign()))
+        & at_end.abs_at_most(body.held::<RICH>(at_end.sign()))
+}
+
 /// One sub-step.
 #[inline(always)]
 pub(super) fn step<const RICH: bool>(
@@ -65,24 +127,13 @@ pub(super) fn step<const RICH: bool>(
     v: Pure,
 ) -> Step {
     let half = Pure(0.5);
-    let Pace {
-        h,
-        rate,
-        kept,
-        damped,
-    } = pace;
-    let s = v.sign();
-    let phi_middle = phi + h * v * half;
-    let (psi, load) = span.middle();
-    let torque = body.torque::<RICH>(psi, load, phi_middle);
-    let net = torque - body.kinetic::<RICH>(s);
-    let mut v1 = (v * kept + rate * net) * damped;
-    if RICH {
-        // What curves with speed: predicted at the speed of the start, then taken at the middle.
-        let guess = v1 - rate * body.curved(v, s) * damped;
-        v1 = v1 - rate * body.curved((v + guess) * half, s) * damped;
-    }
-    let event = (v1 * v).0 <= 0.0;
+    let h = pace.h;
+    let Glide {
+        phi: phi_plain,
+        speed: v1,
+        event,
+        ..
+    } = glide::<RICH>(body, span, pace, phi, v);
     let rested = v.0 == 0.0;
 
     // The instant at which the speed is 0, and the torque from there on with the body held.
@@ -116,7 +167,6 @@ pub(super) fn step<const RICH: bool>(
     }
     let v2 = Pure::ZERO.when((v2 * way).0 <= 0.0, v2);
 
-    let phi_plain = phi_middle + h * v1 * half;
     Step {
         phi: (phi_turn + left * v2 * half).when(event, phi_plain),
         speed: v2.when(event, v1),
