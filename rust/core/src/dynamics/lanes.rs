@@ -12,9 +12,9 @@ use crate::Error;
 use crate::effects::Lane;
 
 use super::drive::Drive;
-use super::march::{Advance, Lanes, MoreauJean, Split};
+use super::march::{Advance, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
-use super::one_mass::{OneMass, PARAMETERS};
+use super::one_mass::OneMass;
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -273,21 +273,12 @@ impl<const N: usize> Task<'_, N> {
     fn along<A: Advance>(self) {
         let part = self.0;
         let last = part.bodies.len() - 1;
-        // Lanes beyond the last repeat it, so that every block is full.
-        let mut table = [[0.0; N]; PARAMETERS];
-        let (mut phi, mut v) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let of = lane.min(last);
-            for (row, value) in table.iter_mut().zip(part.bodies[of].to_array()) {
-                row[lane] = value;
-            }
-            phi[lane] = part.starts[of].phi;
-            v[lane] = part.starts[of].speed;
-        }
         let samples = part.drive.samples();
-        let lanes = Lanes::new(&table, Pure(part.drive.step_s()));
+        let lanes = Lanes::<N>::new(part.bodies, Pure(part.drive.step_s()));
+        let mut state = State::<N>::new(part.starts);
         let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
+            let State { phi, v } = &state;
             if !part.phi.is_empty() {
                 for lane in 0..=last {
                     part.phi[lane * samples + sample] = phi[lane];
@@ -311,9 +302,10 @@ impl<const N: usize> Task<'_, N> {
             }
             for sub in 0..part.drive.substeps() {
                 let span = part.drive.span(sample * part.drive.substeps() + sub);
-                A::advance(&lanes, &span, &mut phi, &mut v);
+                A::advance(&lanes, &span, &mut state);
             }
         }
+        let State { phi, v } = &state;
         for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {
             let n = samples as f64;
             kept.copy_from_slice(&[
