@@ -20,6 +20,7 @@ mod moreau;
 mod number;
 mod one_mass;
 mod split;
+mod tile;
 mod trace;
 
 pub use drive::Drive;

@@ -15,6 +15,7 @@ use super::drive::Drive;
 use super::march::{Advance, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
 use super::one_mass::OneMass;
+use super::tile::Tile;
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -272,23 +273,16 @@ impl<const N: usize> Task<'_, N> {
     #[inline(always)]
     fn along<A: Advance>(self) {
         let part = self.0;
-        let last = part.bodies.len() - 1;
         let samples = part.drive.samples();
         let lanes = Lanes::<N>::new(part.bodies, Pure(part.drive.step_s()));
         let mut state = State::<N>::new(part.starts);
+        let mut angles = Tile::<N>::new(part.phi, part.bodies.len(), samples);
+        let mut speeds = Tile::<N>::new(part.speed, part.bodies.len(), samples);
         let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
             let State { phi, v } = &state;
-            if !part.phi.is_empty() {
-                for lane in 0..=last {
-                    part.phi[lane * samples + sample] = phi[lane];
-                }
-            }
-            if !part.speed.is_empty() {
-                for lane in 0..=last {
-                    part.speed[lane * samples + sample] = v[lane];
-                }
-            }
+            angles.take(sample, phi);
+            speeds.take(sample, v);
             if !part.summary.is_empty() {
                 for lane in 0..N {
                     let size = Pure(phi[lane]).abs();
@@ -302,7 +296,7 @@ impl<const N: usize> Task<'_, N> {
             }
             for sub in 0..part.drive.substeps() {
                 let span = part.drive.span(sample * part.drive.substeps() + sub);
-                A::advance(&lanes, &span, &mut state);
+                A::advance(&lanes, |_| span, &mut state);
             }
         }
         let State { phi, v } = &state;

@@ -9,7 +9,7 @@ use super::drive::Span;
 use super::lanes::Start;
 use super::number::Pure;
 use super::one_mass::{OneMass, PARAMETERS};
-use super::split::{Glide, Pace};
+use super::split::{Glide, Pace, Step};
 use super::{moreau, split};
 
 /// Lanes that take one way together: one vector of the widest instruction set.
@@ -89,8 +89,15 @@ impl<const N: usize> State<N> {
 /// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
 /// code for the instruction set.
 pub(super) trait Advance {
-    /// Takes every lane one sub-step further.
-    fn advance<const N: usize>(lanes: &Lanes<N>, span: &Span, state: &mut State<N>);
+    /// One sub-step of one lane.
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step;
+
+    /// Takes every lane one sub-step further, each along its span.
+    fn advance<const N: usize>(
+        lanes: &Lanes<N>,
+        span_of: impl Fn(usize) -> Span,
+        state: &mut State<N>,
+    );
 }
 
 /// The split step.
@@ -98,7 +105,16 @@ pub(super) struct Split<const RICH: bool>;
 
 impl<const RICH: bool> Advance for Split<RICH> {
     #[inline(always)]
-    fn advance<const N: usize>(lanes: &Lanes<N>, span: &Span, state: &mut State<N>) {
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
+        split::step::<RICH>(body, span, pace, phi, v)
+    }
+
+    #[inline(always)]
+    fn advance<const N: usize>(
+        lanes: &Lanes<N>,
+        span_of: impl Fn(usize) -> Span,
+        state: &mut State<N>,
+    ) {
         for first in (0..N).step_by(GROUP) {
             let (mut phi_next, mut v_next) = ([0.0; GROUP], [0.0; GROUP]);
             let mut event = [0u64; GROUP];
@@ -106,7 +122,7 @@ impl<const RICH: bool> Advance for Split<RICH> {
             for i in 0..GROUP {
                 let (body, pace) = lanes.lane(first + i);
                 let (phi, v) = state.at(first + i);
-                let plain = split::glide::<RICH>(&body, span, pace, phi, v);
+                let plain = split::glide::<RICH>(&body, &span_of(first + i), pace, phi, v);
                 phi_next[i] = plain.phi.0;
                 v_next[i] = plain.speed.0;
                 event[i] = u64::from(plain.event);
@@ -118,7 +134,8 @@ impl<const RICH: bool> Advance for Split<RICH> {
                 for i in 0..GROUP {
                     let (body, _) = lanes.lane(first + i);
                     let (phi, v) = state.at(first + i);
-                    moves |= event[i] & u64::from(!split::stays::<RICH>(&body, span, phi, v));
+                    moves |= event[i]
+                        & u64::from(!split::stays::<RICH>(&body, &span_of(first + i), phi, v));
                 }
                 if moves == 0 {
                     for i in 0..GROUP {
@@ -136,7 +153,8 @@ impl<const RICH: bool> Advance for Split<RICH> {
                             event: event[i] != 0,
                         };
                         let from = state.at(first + i);
-                        let next = split::resolve::<RICH>(&body, span, pace, from, plain);
+                        let next =
+                            split::resolve::<RICH>(&body, &span_of(first + i), pace, from, plain);
                         phi_next[i] = next.phi.0;
                         v_next[i] = next.speed.0;
                     }
@@ -153,11 +171,20 @@ pub(super) struct MoreauJean;
 
 impl Advance for MoreauJean {
     #[inline(always)]
-    fn advance<const N: usize>(lanes: &Lanes<N>, span: &Span, state: &mut State<N>) {
+    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
+        moreau::step(body, span, pace, phi, v)
+    }
+
+    #[inline(always)]
+    fn advance<const N: usize>(
+        lanes: &Lanes<N>,
+        span_of: impl Fn(usize) -> Span,
+        state: &mut State<N>,
+    ) {
         for lane in 0..N {
             let (body, pace) = lanes.lane(lane);
             let (phi, v) = state.at(lane);
-            let next = moreau::step(&body, span, pace, phi, v);
+            let next = moreau::step(&body, &span_of(lane), pace, phi, v);
             state.phi[lane] = next.phi.0;
             state.v[lane] = next.speed.0;
         }
