@@ -11,22 +11,30 @@
     clippy::needless_range_loop
 )]
 
+mod bristle;
 mod drive;
 mod events;
+mod ground;
 mod lanes;
 mod ledger;
+mod level;
 mod march;
 mod moreau;
 mod number;
 mod one_mass;
+mod parameters;
 mod split;
 mod tile;
 mod trace;
 
+pub use bristle::Bristle;
 pub use drive::Drive;
 pub use events::{Event, EventKind};
+pub use ground::Ground;
 pub use lanes::{Batch, Kernel, SUMMARY, Start, Width, simulate, summarise};
 pub use ledger::Ledger;
+pub use level::Level;
 pub use number::Pure;
-pub use one_mass::{NAMES, OneMass, PARAMETERS};
+pub use one_mass::OneMass;
+pub use parameters::{NAMES, PARAMETERS};
 pub use trace::{Trace, trace};

@@ -12,9 +12,9 @@ use crate::Error;
 use crate::effects::Lane;
 
 use super::drive::Drive;
-use super::march::{Advance, Lanes, MoreauJean, Split, State};
+use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
-use super::one_mass::OneMass;
+use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
 use super::tile::Tile;
 
 /// How a step is made.
@@ -141,7 +141,12 @@ fn blocks(
     check(batch, drive)?;
     let block = block_for(batch.bodies.len());
     let count = batch.bodies.len().div_ceil(block);
-    let rich = batch.bodies.iter().any(OneMass::is_rich);
+    let effects = batch
+        .bodies
+        .iter()
+        .map(OneMass::effects)
+        .max()
+        .unwrap_or(PLAIN);
     let samples = drive.samples();
     let places = cut(phi, block * samples, count)
         .into_iter()
@@ -157,7 +162,7 @@ fn blocks(
                 starts: &batch.starts[first..last],
                 drive,
                 kernel: batch.kernel,
-                rich,
+                effects,
                 phi,
                 speed,
                 summary,
@@ -201,14 +206,17 @@ pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
                 });
             }
         }
+        if batch.kernel == Kernel::MoreauJean && body.bristle.acts() {
+            return Err(Error::OutOfRange {
+                name: "presliding_breakaway_rad",
+                value: 1.0 / body.bristle.per_travel,
+                interval: "{0} with moreau_jean, whose contact is rigid: take split".to_owned(),
+            });
+        }
         let frequency = body.highest_frequency_rad_s(wound + body.ratio * start.phi.abs());
         let longest = 2.0 / frequency;
         if drive.step_s() >= longest {
-            let spring = if body.ratio * body.ratio * body.stiffness >= body.aligning {
-                "stiffness_nm_per_rad"
-            } else {
-                "aligning_nm_per_rad"
-            };
+            let spring = body.stiffest_spring(wound + body.ratio * start.phi.abs());
             return Err(Error::OutOfRange {
                 name: "step (seconds)",
                 value: drive.step_s(),
@@ -227,7 +235,7 @@ struct Part<'a> {
     starts: &'a [Start],
     drive: &'a Drive,
     kernel: Kernel,
-    rich: bool,
+    effects: usize,
     phi: &'a mut [f64],
     speed: &'a mut [f64],
     summary: &'a mut [f64],
@@ -261,10 +269,12 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.rich) {
-            (Kernel::Split, false) => self.along::<Split<false>>(),
-            (Kernel::Split, true) => self.along::<Split<true>>(),
+        match (self.0.kernel, self.0.effects) {
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
+            (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
+            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
+            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
+            (Kernel::Split, _) => self.along::<Elastic>(),
         }
     }
 }
@@ -280,7 +290,7 @@ impl<const N: usize> Task<'_, N> {
         let mut speeds = Tile::<N>::new(part.speed, part.bodies.len(), samples);
         let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
         for sample in 0..samples {
-            let State { phi, v } = &state;
+            let State { phi, v, .. } = &state;
             angles.take(sample, phi);
             speeds.take(sample, v);
             if !part.summary.is_empty() {
@@ -299,7 +309,7 @@ impl<const N: usize> Task<'_, N> {
                 A::advance(&lanes, |_| span, &mut state);
             }
         }
-        let State { phi, v } = &state;
+        let State { phi, v, .. } = &state;
         for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {
             let n = samples as f64;
             kept.copy_from_slice(&[

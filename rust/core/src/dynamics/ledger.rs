@@ -1,7 +1,7 @@
 //! Where the energy of a trajectory went.
 
 use super::number::Pure;
-use super::one_mass::OneMass;
+use super::one_mass::{EVERY, OneMass};
 use super::split::Step;
 
 /// Energies of a trajectory, J.
@@ -15,7 +15,7 @@ pub struct Ledger {
     pub stored_first: f64,
     /// The same at the end.
     pub stored_last: f64,
-    /// Turned into heat by dry friction, Stribeck's part included.
+    /// Turned into heat by dry friction, Stribeck's part included; on an elastic contact with what the contact holds.
     pub dry: f64,
     /// By viscous friction.
     pub viscous: f64,
@@ -46,29 +46,34 @@ impl Ledger {
         (first, last): ((Pure, Pure), (Pure, Pure)),
     ) {
         let mean = |a: Pure, b: Pure| 0.5 * (a.0 + b.0);
-        let turned = body.at_handwheel::<true>(first.0, phi);
-        let turned_last = body.at_handwheel::<true>(last.0, step.phi);
+        let turned = body.at_handwheel::<EVERY>(first.0, phi);
+        let turned_last = body.at_handwheel::<EVERY>(last.0, step.phi);
         let input = mean(turned, turned_last) * (last.0.0 - first.0.0);
         let loaded = mean(first.1, last.1) * (step.phi.0 - phi.0);
+        let load = Pure(mean(first.1, last.1));
         // Until the speed is 0, and from the break-away on.
         let before = part(
             body,
             step.moving.0 * h,
-            v,
-            step.speed_turn,
-            step.phi_turn.0 - phi.0,
+            (v, step.speed_turn),
+            (phi, step.phi_turn),
+            load,
         );
         let left = (1.0 - step.moving.0 - step.stuck.0) * h;
         let after = part(
             body,
             left,
-            Pure::ZERO,
-            step.speed,
-            step.phi.0 - step.phi_turn.0,
+            (Pure::ZERO, step.speed),
+            (step.phi_turn, step.phi),
+            load,
         );
+        if body.bristle.per_travel.0 == 0.0 {
+            self.dry += before[0] + after[0];
+        } else {
+            self.dry += step.grip.0 * (step.phi.0 - phi.0);
+        }
         self.handwheel += input;
         self.load += loaded;
-        self.dry += before[0] + after[0];
         self.viscous += before[1] + after[1];
         self.curved += before[2] + after[2];
         self.turnover += input.abs() + loaded.abs();
@@ -76,19 +81,27 @@ impl Ledger {
 }
 
 /// Heat of dry, viscous and curved friction over a stretch in which the speed goes evenly from one value to another.
-fn part(body: &OneMass<Pure>, seconds: f64, from: Pure, to: Pure, way: f64) -> [f64; 3] {
+fn part(
+    body: &OneMass<Pure>,
+    seconds: f64,
+    (from, to): (Pure, Pure),
+    (first, last): (Pure, Pure),
+    load: Pure,
+) -> [f64; 3] {
     if seconds <= 0.0 {
         return [0.0; 3];
     }
+    let way = last.0 - first.0;
     let direction = Pure(way).sign();
     let middle = Pure(0.5 * (from.0 + to.0));
+    let place = Pure(0.5 * (first.0 + last.0));
     // Simpson's rule: exact for the viscous part, whose power is a parabola.
     let along = |power: &dyn Fn(Pure) -> f64| {
         seconds * (power(from) + 4.0 * power(middle) + power(to)) / 6.0
     };
     let extra = |v: Pure| body.stribeck_torque(v, direction).0 * v.0;
     [
-        body.kinetic::<true>(direction).0 * way + along(&extra),
+        body.kinetic::<EVERY>(direction, place, load).0 * way + along(&extra),
         along(&|v| body.linear(v).0 * v.0),
         along(&|v| (body.curved(v, direction).0 - body.stribeck_torque(v, direction).0) * v.0),
     ]

@@ -2,14 +2,14 @@
 
 use crate::Error;
 
-use super::drive::Drive;
+use super::drive::{Drive, Span};
 use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lanes::{Batch, Kernel, Start, Width, check};
 use super::ledger::Ledger;
-use super::march::{Advance, MoreauJean, Split};
+use super::march::{Advance, Elastic, MoreauJean, Split};
 use super::number::Pure;
-use super::one_mass::OneMass;
-use super::split::Pace;
+use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::split::{Carried, Pace, Step};
 
 /// What [`trace`] returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,9 @@ pub struct Trace {
     /// Where the energy went.
     pub ledger: Ledger,
 }
+
+/// One sub-step of one body.
+type Stepper = fn(&OneMass<Pure>, &Span, Pace, (Pure, Pure), Carried) -> Step;
 
 /// Runs one body along a drive, with the same bits as a lane of [`super::simulate`].
 ///
@@ -41,8 +44,15 @@ pub fn trace(
         width: Width::Baseline,
     };
     check(batch, drive)?;
-    let rich = body.is_rich();
+    let step: Stepper = match (kernel, body.effects()) {
+        (Kernel::MoreauJean, _) => MoreauJean::step,
+        (Kernel::Split, PLAIN) => Split::<PLAIN>::step,
+        (Kernel::Split, CURVED) => Split::<CURVED>::step,
+        (Kernel::Split, EVERY) => Split::<EVERY>::step,
+        (Kernel::Split, _) => Elastic::step,
+    };
     let body = body.pure();
+    let mut carried = Carried::NONE;
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
     let h = drive.step_s();
     let pace = Pace::of(&body, Pure(h));
@@ -66,11 +76,7 @@ pub fn trace(
             let number = sample * drive.substeps() + sub;
             let span = drive.span(number);
             let time_s = number as f64 * h;
-            let step = match (kernel, rich) {
-                (Kernel::MoreauJean, _) => MoreauJean::step(&body, &span, pace, phi, v),
-                (Kernel::Split, false) => Split::<false>::step(&body, &span, pace, phi, v),
-                (Kernel::Split, true) => Split::<true>::step(&body, &span, pace, phi, v),
-            };
+            let step = step(&body, &span, pace, (phi, v), carried);
             friction_events(&mut out.events, time_s, h, v, &step);
             if body.gap.0 > 0.0 {
                 let (psi, _) = span.end();
@@ -81,7 +87,7 @@ pub fn trace(
             }
             let drives = (span.start(), span.end());
             out.ledger.book(&body, h, (phi, v), &step, drives);
-            (phi, v) = (step.phi, step.speed);
+            (phi, v, carried) = (step.phi, step.speed, step.carried);
         }
     }
     let (psi, _) = drive.span((samples - 1) * drive.substeps() - 1).end();
