@@ -41,6 +41,7 @@ MAY_IMPORT = {
     "effects": FOUNDATION | {"model"},
     "dynamics": FOUNDATION,
     "projections": FOUNDATION,
+    "vehicle": FOUNDATION | {"dynamics"},
     "diagnosis": FOUNDATION | {"measurement", "model"},
     "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model"},
     "planning": FOUNDATION | {"diagnosis", "measurement", "model"},

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from . import signal as signal
     from . import stats as stats
     from . import tb038 as tb038
+    from . import vehicle as vehicle
     from .diagnosis import compare as compare
     from .diagnosis import diagnose as diagnose
     from .diagnosis import fit as fit
@@ -52,6 +53,7 @@ _LAZY: dict[str, str] = {
     "stats": "stats",
     "study": "diagnosis:study",
     "tb038": "tb038",
+    "vehicle": "vehicle",
 }
 
 

@@ -1,5 +1,5 @@
 from collections.abc import Sequence
-from typing import Literal, Self, TypedDict, final, type_check_only
+from typing import Any, Literal, Self, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,8 @@ __all__ = [
     "RollingPolynomial",
     "ZeroPhase",
     "__version__",
+    "car_names",
+    "drive_cars",
     "effect_cards",
     "even",
     "extremes",
@@ -481,4 +483,26 @@ def project(
     b: NDArray[np.float64],
     start: float,
     out: NDArray[np.float64],
+) -> None: ...
+
+# vehicle
+
+def car_names() -> tuple[list[str], list[str], list[str], list[str]]: ...
+def drive_cars(
+    cars: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    durations_s: NDArray[np.float64],
+    speed: tuple[Any, ...],
+    hand: tuple[Any, ...],
+    corridor: NDArray[np.float64] | None,
+    *,
+    sections: int,
+    steer: str,
+    model: str,
+    tyre: str,
+    step_s: float,
+    every: int,
+    width: str,
+    summary: NDArray[np.float64],
+    traces: NDArray[np.float64],
 ) -> None: ...

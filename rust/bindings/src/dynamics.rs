@@ -210,7 +210,7 @@ fn kernel(name: &str) -> PyResult<Kernel> {
     }
 }
 
-fn width(name: &str) -> PyResult<Width> {
+pub(crate) fn width(name: &str) -> PyResult<Width> {
     match name {
         "widest" => Ok(Width::Widest),
         "baseline" => Ok(Width::Baseline),
@@ -220,7 +220,7 @@ fn width(name: &str) -> PyResult<Width> {
     }
 }
 
-fn unknown(what: &'static str, name: &str, known: &str) -> PyErr {
+pub(crate) fn unknown(what: &'static str, name: &str, known: &str) -> PyErr {
     CoreError(luztar::Error::Unknown {
         what,
         name: name.to_owned(),

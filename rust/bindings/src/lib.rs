@@ -12,6 +12,7 @@ mod regression;
 mod signal;
 mod stats;
 mod stream;
+mod vehicle;
 
 use pyo3::prelude::*;
 
@@ -43,6 +44,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::stream::{Bank, Filter, FixedLag};
+    #[pymodule_export]
+    use crate::vehicle::{car_names, drive_cars};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

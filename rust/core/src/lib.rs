@@ -11,5 +11,6 @@ pub mod projections;
 pub mod regression;
 pub mod signal;
 pub mod stats;
+pub mod vehicle;
 
 pub use error::Error;
