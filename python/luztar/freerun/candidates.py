@@ -7,12 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model import Card, cards
+from ..model import Card
 from .fit import FreeFit
 from .solve import Solution, solve_with
-
-# A Stribeck speed below this share of the road wheel's top speed is felt at rest only: it is stiction.
-SLOW_SHARE = 0.03
 
 
 @dataclass(frozen=True)
@@ -46,31 +43,18 @@ class Candidate:
 def try_all(fitted: FreeFit, progress: Callable[[int, int], None] | None = None) -> list[Candidate]:
     """Return every candidate by its unseen loss, the best first."""
     model = fitted.model
-    wanted = [
-        c
-        for c in cards(model.structure_name)
-        if c.name not in model.effects and (c.needs is None or c.needs in model.effects)
-    ]
+    plant = fitted.free_problem.plant
+    wanted = plant.candidates(model)
+    top_speed = plant.top_speed(fitted.simulated, fitted.free_problem.data.records)
     found = []
     for i, c in enumerate(wanted):
         if progress is not None:
             progress(i, len(wanted))
         solved = solve_with(fitted.free_problem, model + c.name, fitted.solution.found, c.name)
-        found.append(Candidate(c, solved, _same_as(fitted, c, solved)))
+        found.append(Candidate(c, solved, plant.same_as(c, solved.found, top_speed)))
     if progress is not None:
         progress(len(wanted), len(wanted))
     return sorted(found, key=lambda c: c.solution.held_out_loss)
-
-
-def _same_as(fitted: FreeFit, c: Card, solved: Solution) -> str | None:
-    if c.name == "asymmetric_coulomb":
-        return c.becomes
-    if c.name == "stribeck":
-        pairs = zip(fitted.predicted, fitted.runs, strict=True)
-        top = max(float(np.abs(np.gradient(p, r.step_s)).max()) for p, r in pairs)
-        if solved.found["stribeck.speed_rad_s"] < SLOW_SHARE * top:
-            return c.becomes
-    return None
 
 
 def gain(before: Solution, after: Solution) -> tuple[float, float]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ..diagnosis.chance import one_sided, p_values, signs, studentised
 from ..diagnosis.floor import hats
+from ..diagnosis.prepare import Prepared
 from ..diagnosis.score import Detection
 from .fit import FreeFit
 from .least_squares import jacobian
@@ -20,7 +21,7 @@ SINCE = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8)
 
 def _features(fitted: FreeFit) -> dict[str, np.ndarray]:
     """Return directions to look along, each of shape (samples, count)."""
-    runs = fitted.runs
+    runs = [r.outputs[0] for r in fitted.free_problem.data.records]
     usable = [r.usable for r in runs]
 
     def stack(values: list[np.ndarray]) -> np.ndarray:
@@ -28,22 +29,25 @@ def _features(fitted: FreeFit) -> dict[str, np.ndarray]:
 
     psi = stack([r.motion for r in runs])
     speed = stack([r.speed for r in runs])
-    since, direction, clock = (stack(v) for v in _clocks(fitted))
+    since, direction, clock = (stack(v) for v in _clocks(runs))
     angles = hats(psi, np.linspace(psi.min(), psi.max(), ANGLES))
     top = float(np.abs(speed).max())
     speeds = hats(np.abs(speed), top * np.linspace(0.0, 1.0, SPEEDS) ** 1.5)
     after = hats(since, np.array(SINCE))[:, :-1]
     side = direction[:, None]
-    return {
+    each = {
         "state": np.hstack([angles, side * angles, speeds, side * speeds]),
         "reversal": np.hstack([after, side * after]),
         "time": np.column_stack([clock, side[:, 0] * clock]),
     }
+    # Along every channel out by itself: a sample's channels stand side by side.
+    channels = np.eye(len(fitted.free_problem.data.records[0].channels))
+    return {name: np.kron(columns, channels) for name, columns in each.items()}
 
 
-def _clocks(fitted: FreeFit) -> tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray]]:
+def _clocks(runs: Sequence[Prepared]) -> tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray]]:
     since, direction, clock = [], [], []
-    for r in fitted.runs:
+    for r in runs:
         elapsed, way = np.full(r.motion.size, np.inf), np.zeros(r.motion.size)
         for s in r.strokes:
             elapsed[s.onset : s.last] = np.arange(s.last - s.onset) * r.step_s

@@ -28,7 +28,9 @@ class FreeDiagnosis(Diagnosis):
     @functools.cached_property
     def next_experiment(self) -> Experiment | None:
         """The test that would tell apart what this measurement could not."""
-        return experiment_for(self.named)
+        fitted = self.fit
+        assert isinstance(fitted, FreeFit)
+        return experiment_for(fitted.free_problem.plant, self.named, fitted.model)
 
 
 def diagnose(fitted: FreeFit, *, progress: Callable[[int, int], None] | None = None) -> FreeDiagnosis:

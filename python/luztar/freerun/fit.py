@@ -1,4 +1,4 @@
-"""Fitting a steering model to free runs."""
+"""Fitting a model to free runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from ..model import Model
 from .floor import noise_floor
 from .intervals import estimates
 from .least_squares import Data
-from .predict import predict
+from .parameters import Parameters
+from .plants import plant_of
 from .record import Record, make_records
 from .solve import Problem, Solution, solve
 
@@ -33,10 +34,13 @@ class FreeFit(Fit):
     ----------
     free_problem : Problem
     solution : Solution
+    simulated : tuple of ndarray, shape (n, outputs)
+        Of every run, in SI units.
     """
 
     free_problem: Problem = field(repr=False)
     solution: Solution = field(repr=False)
+    simulated: tuple[np.ndarray, ...] = field(repr=False)
 
     @functools.cached_property
     def flags(self) -> tuple[Flag, ...]:
@@ -49,21 +53,24 @@ class FreeFit(Fit):
 
 
 def fit(model: Model, runs: Sequence[Run], held_out: Sequence[Run] = ()) -> FreeFit:
-    """Fit a steering model to runs; see ``luztar.fit``."""
-    records = make_records(runs, model)
-    unseen = make_records(held_out, model) if len(held_out) else ()
-    problem = Problem.of(records, model)
+    """Fit a model to free runs; see ``luztar.fit``."""
+    plant = plant_of(model)
+    plant.require(model)
+    records = make_records(runs, plant, model)
+    unseen = make_records(held_out, plant, model, records) if len(held_out) else ()
+    problem = Problem.of(plant, records, model)
     return finish(problem, solve(problem, model), unseen, noise_floor(records, model.structure.effort_unit))
 
 
 def finish(problem: Problem, solution: Solution, unseen: Sequence[Record], floor: NoiseFloor) -> FreeFit:
     """Turn a solution into a fit: predictions, error, parameters."""
     parameters, data = solution.parameters, problem.data
-    runs = tuple(r.prepared for r in data.records)
-    predicted = tuple(p[0] for p in predict(parameters, data.records, solution.values))
+    runs = tuple(p for r in data.records for p in r.outputs)
+    simulated = _simulated(parameters, data.records, solution.values)
+    predicted = _by_channel(simulated, data.records)
     if unseen:
-        held = tuple(p[0] for p in predict(parameters, unseen, solution.values))
-        held_runs = tuple(r.prepared for r in unseen)
+        held = _by_channel(_simulated(parameters, unseen, solution.values), unseen)
+        held_runs = tuple(p for r in unseen for p in r.outputs)
     else:
         held, held_runs = _unseen(data, solution), runs
     error = misfit(
@@ -75,28 +82,38 @@ def finish(problem: Problem, solution: Solution, unseen: Sequence[Record], floor
     )
     return FreeFit(
         model=parameters.model,
-        run_names=tuple(r.name for r in runs),
-        held_out_names=tuple(r.prepared.name for r in unseen),
+        run_names=tuple(r.name for r in data.records),
+        held_out_names=tuple(r.name for r in unseen),
         parameters=estimates(data, parameters, solution.values),
         error=error,
         noise_floor=floor,
         runs=runs,
-        held_out=tuple(r.prepared for r in unseen),
+        held_out=tuple(p for r in unseen for p in r.outputs),
         predicted=predicted,
         held_out_predicted=held,
         problem=None,  # type: ignore[arg-type]
         search=None,  # type: ignore[arg-type]
         free_problem=problem,
         solution=solution,
+        simulated=simulated,
     )
+
+
+def _simulated(parameters: Parameters, records: Sequence[Record], values: np.ndarray) -> tuple[np.ndarray, ...]:
+    return tuple(p[0] for p in parameters.plant.predict(parameters, records, values[None, :]))
+
+
+def _by_channel(simulated: Sequence[np.ndarray], records: Sequence[Record]) -> tuple[np.ndarray, ...]:
+    of = zip(simulated, records, strict=True)
+    return tuple(column for p, r in of for column in np.ascontiguousarray((p / r.scales).T))
 
 
 def _unseen(data: Data, solution: Solution) -> tuple[np.ndarray, ...]:
     out, begin = [], 0
     for record, keep in zip(data.records, data.keep, strict=True):
-        count = int(keep.sum())
-        values = record.prepared.effort.copy()
-        values[keep] -= solution.unseen[begin : begin + count]
-        out.append(values)
+        values = record.measured.copy()
+        count = values[keep].size
+        values[keep] -= solution.unseen[begin : begin + count].reshape(-1, len(record.channels))
+        out.extend(np.ascontiguousarray(values.T))
         begin += count
     return tuple(out)

@@ -14,7 +14,7 @@ STROKE_FOLDS = 5
 def folds_of(data: Data) -> np.ndarray:
     """Return the fold of every sample of the comparison."""
     if len(data.records) > 1:
-        return np.concatenate([np.full(int(k.sum()), i) for i, k in enumerate(data.keep)])
+        return np.concatenate([np.full(len(r.channels) * int(r.usable.sum()), i) for i, r in enumerate(data.records)])
     fold = np.zeros(data.measured.size, np.int64)
     for i, s in enumerate(stroke_slices(data)):
         fold[s] = i % STROKE_FOLDS

@@ -9,20 +9,21 @@ import numpy as np
 
 from ..diagnosis.intervals import COLLINEAR_SHARE, Estimate, student
 from ..model import card
+from ..model.cards import own_cards
 from .least_squares import Data, jacobian
-from .parameters import Parameters, keys_of
+from .parameters import Parameters
 
 
 def stroke_slices(data: Data) -> list[slice]:
     """Return the comparison's samples of every stroke, in the order of the data."""
     out, begin = [], 0
     for r in data.records:
-        p = r.prepared
+        p, width = r.outputs[0], len(r.channels)
         first = int(np.argmax(p.usable))
         for from_, to in p.used:
             if to > from_:
-                out.append(slice(begin + from_ - first, begin + to - first))
-        begin += int(p.usable.sum())
+                out.append(slice(begin + width * (from_ - first), begin + width * (to - first)))
+        begin += width * int(p.usable.sum())
     return out
 
 
@@ -30,13 +31,13 @@ def estimates(data: Data, parameters: Parameters, values: np.ndarray) -> dict[st
     """Return every parameter of a fit, keyed ``effect.parameter``."""
     model = parameters.model
     units = {
-        f"{name}.{p.key}": p.unit
-        for name in (model.structure_name, *model.effects)
-        for p in card(name, model.structure_name).parameters
+        f"{c.name}.{p.key}": p.unit
+        for c in (*own_cards(model.structure_name), *(card(e, model.structure_name) for e in model.effects))
+        for p in c.parameters
     }
     half, collinear = _half_widths(data, parameters, values)
     out: dict[str, Estimate] = {}
-    for key in keys_of(model):
+    for key in parameters.plant.keys(model):
         if key in model.known:
             value = model.known[key]
             out[key] = Estimate(value, value, value, True, units[key], "given")

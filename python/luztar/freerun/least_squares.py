@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .parameters import Parameters, step_of
-from .predict import predict
 from .record import Record
 
 # Dampings tried at once, as multiples of the last one that worked.
@@ -33,7 +32,7 @@ class Data:
     ----------
     records : tuple of Record
     measured : ndarray, shape (samples,)
-        The comparison's samples of all runs, one after the other.
+        The comparison's samples of all runs, one after the other; the channels of a sample stand side by side.
     keep : tuple of ndarray of bool
         The comparison's samples of every run.
     """
@@ -45,14 +44,17 @@ class Data:
     @classmethod
     def of(cls, records: Sequence[Record]) -> Data:
         """Return the data of records."""
-        keep = tuple(r.prepared.usable for r in records)
-        measured = np.concatenate([r.prepared.effort[k] for r, k in zip(records, keep, strict=True)])
+        keep = tuple(r.usable for r in records)
+        measured = np.concatenate([r.measured[k].ravel() for r, k in zip(records, keep, strict=True)])
         return cls(tuple(records), measured, keep)
 
     def modelled(self, parameters: Parameters, values: np.ndarray) -> np.ndarray:
         """Return the model at the comparison's samples, shape (lanes, samples)."""
-        out = predict(parameters, self.records, values)
-        return np.concatenate([p[:, k] for p, k in zip(out, self.keep, strict=True)], axis=1)
+        out = parameters.plant.predict(parameters, self.records, values)
+        return np.concatenate(
+            [(p[:, k] / r.scales).reshape(len(p), -1) for p, r, k in zip(out, self.records, self.keep, strict=True)],
+            axis=1,
+        )
 
 
 def jacobian(data: Data, parameters: Parameters, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from .._arrays import vector
 from ..dynamics import COLUMNS, Trace, trace
 from ..errors import ModelError
 from ..model import Model
-from .parameters import keys_of
+from .plant import keys_of
 
 # As in fits: an error of 4e-5 in the frequency of the mechanism's own oscillation.
 STEPS_PER_RADIAN = 30.0

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..model import Model, card
+from ..model.cards import own_cards
 from .folds import folds_of, training
 from .intervals import stroke_slices
 from .least_squares import Data, minimise
 from .parameters import Parameters, parameters_of
+from .plant import Plant
 from .record import Record
-from .sizes import sizes_of
 from .starts import first_starts, starts_with
 
 # Iterations of the search from every start, and how many of the starts go on to the end.
@@ -29,6 +30,7 @@ class Problem:
 
     Attributes
     ----------
+    plant : Plant
     data : Data
     sizes : mapping
         What is large for each parameter.
@@ -37,16 +39,17 @@ class Problem:
         The comparison's samples of every stroke.
     """
 
+    plant: Plant
     data: Data
     sizes: Mapping[str, float]
     fold: np.ndarray
     strokes: list[slice]
 
     @classmethod
-    def of(cls, records: Sequence[Record], model: Model) -> Problem:
+    def of(cls, plant: Plant, records: Sequence[Record], model: Model) -> Problem:
         """Return the problem of records; the model gives what is known."""
         data = Data.of(records)
-        return cls(data, sizes_of(records, model), folds_of(data), stroke_slices(data))
+        return cls(plant, data, plant.sizes(records, model), folds_of(data), stroke_slices(data))
 
 
 @dataclass(frozen=True)
@@ -86,30 +89,30 @@ class Solution:
 
 def solve(problem: Problem, model: Model) -> Solution:
     """Fit a model from nothing: the mechanism first, then its effects one after the other."""
-    bare = _only(model, [e for e in model.effects if e in ("viscous", "offset")])
-    parameters = parameters_of(bare, problem.sizes)
+    bare = _only(model, [e for e in model.effects if e in problem.plant.first])
+    parameters = parameters_of(problem.plant, bare, problem.sizes)
     values, loss = _search(problem, parameters, first_starts(parameters))
     for effect in (e for e in _in_order(model) if e not in bare.effects):
         found = parameters.values_of(values)
         bare = _only(model, [*bare.effects, effect])
-        parameters = parameters_of(bare, problem.sizes)
+        parameters = parameters_of(problem.plant, bare, problem.sizes)
         values, loss = _search(problem, parameters, starts_with(parameters, found, effect))
     # The effects stand in the model's own order.
-    own = parameters_of(model, problem.sizes)
+    own = parameters_of(problem.plant, model, problem.sizes)
     values = np.array([parameters.values_of(values)[key] for key in own.free])
     return complete(problem, own, values, loss)
 
 
 def solve_with(problem: Problem, model: Model, found: Mapping[str, float], effect: str) -> Solution:
     """Fit a model in which one effect is new and the others start from what was found."""
-    parameters = parameters_of(model, problem.sizes)
+    parameters = parameters_of(problem.plant, model, problem.sizes)
     values, loss = _search(problem, parameters, starts_with(parameters, found, effect))
     return complete(problem, parameters, values, loss)
 
 
 def solve_from(problem: Problem, model: Model, found: Mapping[str, float]) -> Solution:
     """Fit a model from what was found for a larger or equal one."""
-    parameters = parameters_of(model, problem.sizes)
+    parameters = parameters_of(problem.plant, model, problem.sizes)
     start = np.array([[found.get(key, 0.0) for key in parameters.free]])
     values, loss = minimise(problem.data, parameters, start)
     return complete(problem, parameters, values[0], float(loss[0]))
@@ -145,13 +148,18 @@ def complete(problem: Problem, parameters: Parameters, values: np.ndarray, loss:
 
 
 def _only(model: Model, effects: Sequence[str]) -> Model:
-    names = (*effects, model.structure_name)
+    names = (*effects, *(c.name for c in own_cards(model.structure_name)))
     return replace(
         model,
         effects=tuple(effects),
-        known={k: v for k, v in model.known.items() if k.partition(".")[0] in names},
-        start={k: v for k, v in model.start.items() if k.partition(".")[0] in names},
+        known={k: v for k, v in model.known.items() if _kept(k, names)},
+        start={k: v for k, v in model.start.items() if _kept(k, names)},
     )
+
+
+def _kept(key: str, names: Sequence[str]) -> bool:
+    """Whether a key belongs to one of these cards, or to the model as a whole."""
+    return "." not in key or key.partition(".")[0] in names
 
 
 def _in_order(model: Model) -> list[str]:

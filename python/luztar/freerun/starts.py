@@ -9,33 +9,11 @@ import numpy as np
 
 from .parameters import Parameters
 
-# Shares of the sizes. A gap or a break-away moves events: the loss over it has several valleys.
-GRIDS: Mapping[str, Mapping[str, tuple[float, ...]]] = {
-    "freeplay": {"freeplay.gap_rad": (0.1, 0.4, 1.0, 2.0, 4.0)},
-    "coulomb": {"coulomb.level_nm": (0.03, 0.1, 0.3, 1.0)},
-    "stiction": {"coulomb.level_nm": (0.2, 0.5, 0.8, 1.0), "stiction.extra_nm": (0.1, 0.3, 0.6, 1.0)},
-    "stribeck": {
-        "coulomb.level_nm": (0.6, 0.95),
-        "stribeck.extra_nm": (-0.3, 0.3, 0.8),
-        "stribeck.speed_rad_s": (0.1, 1.0, 4.0),
-    },
-    "hardening": {"hardening.coefficient_nm_per_rad3": (-0.05, 0.05, 0.5)},
-    "drag": {"drag.coefficient_nm_s2_per_rad2": (0.1, 0.6)},
-    "asymmetric_coulomb": {"asymmetric_coulomb.difference_nm": (-0.3, 0.3)},
-    "asymmetric_viscous": {"asymmetric_viscous.difference_nm_s_per_rad": (-0.3, 0.3)},
-    "delay": {"delay.time_s": (0.1, 1.0, 4.0)},
-    "offset": {"offset.level_rad": (0.0,)},
-}
-STRUCTURE_GRID: Mapping[str, tuple[float, ...]] = {
-    "steering.inertia_kg_m2": (0.3, 1.0, 3.0),
-    "viscous.coefficient_nm_s_per_rad": (0.3, 1.0, 3.0),
-}
-
 
 def first_starts(parameters: Parameters) -> np.ndarray:
     """Return starts where nothing is known yet, shape (starts, free)."""
     sizes = dict(zip(parameters.free, parameters.scale, strict=True))
-    return _product(parameters, _from_model(parameters), STRUCTURE_GRID, sizes)
+    return _product(parameters, _from_model(parameters), parameters.plant.structure_grid, sizes)
 
 
 def starts_with(parameters: Parameters, found: Mapping[str, float], effect: str) -> np.ndarray:
@@ -54,15 +32,8 @@ def starts_with(parameters: Parameters, found: Mapping[str, float], effect: str)
     for i, key in enumerate(parameters.free):
         if key in found:
             base[i] = found[key]
-    level = found.get("coulomb.level_nm", 0.0)
-    if effect in ("stiction", "stribeck", "asymmetric_coulomb") and level > 0.0:
-        # The level found so far stands between kinetic and static friction.
-        for key in ("coulomb.level_nm", "stiction.extra_nm", "stribeck.extra_nm", "asymmetric_coulomb.difference_nm"):
-            if key in sizes:
-                sizes[key] = level
-    if effect == "asymmetric_viscous":
-        sizes["asymmetric_viscous.difference_nm_s_per_rad"] = found.get("viscous.coefficient_nm_s_per_rad", 1.0)
-    made = _product(parameters, base, GRIDS.get(effect, {}), sizes)
+    sizes |= {k: v for k, v in parameters.plant.sizes_for(effect, found).items() if k in sizes}
+    made = _product(parameters, base, parameters.plant.grids.get(effect, {}), sizes)
     # As it was, with next to nothing of the effect: never worse than without it.
     return np.vstack([made, parameters.inside(_next_to_nothing(parameters, base, effect))])
 
@@ -70,8 +41,9 @@ def starts_with(parameters: Parameters, found: Mapping[str, float], effect: str)
 def _next_to_nothing(parameters: Parameters, base: np.ndarray, effect: str) -> np.ndarray:
     out = base.copy()
     for i, key in enumerate(parameters.free):
-        if key.startswith(f"{effect}.") and key != "stribeck.speed_rad_s":
-            out[i] = 1e-3 * parameters.scale[i]
+        nothing = parameters.plant.nothing(key, float(parameters.scale[i]))
+        if key.startswith(f"{effect}.") and nothing is not None:
+            out[i] = nothing
     return out
 
 
@@ -79,7 +51,7 @@ def _from_model(parameters: Parameters) -> np.ndarray:
     """Return the model's start values; what has none stands at its size if the structure needs it, else at 0."""
     out = np.zeros(len(parameters.free))
     for i, key in enumerate(parameters.free):
-        whole = key.startswith(("steering.", "viscous.")) or key == "stribeck.speed_rad_s"
+        whole = parameters.plant.whole(key)
         out[i] = parameters.model.start.get(key, parameters.scale[i] if whole else 0.0)
     return parameters.inside(out)
 

@@ -17,6 +17,7 @@ from .diagnose import FreeDiagnosis, diagnose
 from .experiment import experiment_for
 from .fit import FreeFit, finish
 from .floor import noise_floor
+from .plants import plant_of
 from .record import Record, make_records
 from .solve import Problem, Solution, solve, solve_from, solve_with
 
@@ -48,9 +49,11 @@ def study(
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Study:
     """Compare, diagnose, add and refit until nothing is missing; see ``luztar.study``."""
-    records = make_records(runs, model)
-    unseen = make_records(held_out, model) if len(held_out) else ()
-    loop = _Loop(Problem.of(records, model), unseen, noise_floor(records, model.structure.effort_unit), progress)
+    plant = plant_of(model)
+    plant.require(model)
+    records = make_records(runs, plant, model)
+    unseen = make_records(held_out, plant, model, records) if len(held_out) else ()
+    loop = _Loop(Problem.of(plant, records, model), unseen, noise_floor(records, model.structure.effort_unit), progress)
     base = loop.finish(solve(loop.problem, model))
     fitted, added, offered = base, [], {}
     looks = [loop.look(base, 1)]
@@ -109,6 +112,6 @@ def _ladder(
         after = fitted if len(left) == 1 else loop.finish(solved)
         others = tuple(n for n in offered.get(name, ()) if n != name and n not in after.model.effects)
         members = (name, *others)
-        steps.append(Step(name, members, provisional, after, experiment_for(members)))
+        steps.append(Step(name, members, provisional, after, experiment_for(loop.problem.plant, members, last.model)))
         left.remove(name)
     return tuple(steps)

@@ -165,10 +165,12 @@ def _for_steering(effect: str, p: Parameter) -> Parameter:
 
 
 @functools.cache
-def own_card(structure: str) -> Card | None:
-    """Return the card of a structure's own parameters, named as the structure; None where it has none."""
-    if structure != "steering":
-        return None
+def own_cards(structure: str) -> tuple[Card, ...]:
+    """Return the cards of a structure's own parameters; none where all belong to effects."""
+    return (_steering(),) if structure == "steering" else ()
+
+
+def _steering() -> Card:
     parameters = tuple(
         Parameter(key, symbol, meaning, low, math.inf, "linear", None)
         for key, symbol, meaning, low in steering_words.OWN
@@ -214,9 +216,9 @@ def card(name: str, structure: str = "rig") -> Card:
     known = _all(structure)
     if name in known:
         return known[name]
-    own = own_card(structure)
-    if own is not None and name == own.name:
-        return own
+    for own in own_cards(structure):
+        if name == own.name:
+            return own
     near = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
     guess = f"Did you mean {' or '.join(near)}? " if near else ""
     listed = ", ".join(c.name for c in known.values() if not c.is_decoy)

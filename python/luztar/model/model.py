@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ModelError
-from .cards import card, own_card
+from .cards import card, own_cards
 from .steering_words import SHORT_KEYS
 from .structure import Structure, structure
 
@@ -119,8 +119,7 @@ class Model:
                 raise ModelError(f"pitch_m is {value}", where, "Give the travel per turn, above 0.")
             return
         effect, _, parameter = key.partition(".")
-        own = own_card(self.structure_name)
-        if effect not in self.effects and not (own is not None and effect == own.name):
+        if effect not in self.effects and effect not in (c.name for c in own_cards(self.structure_name)):
             listed = ", ".join(self.effects)
             raise ModelError(f"'{key}' belongs to no effect of the model", where, f"Its effects are: {listed}.")
         parameters = {p.key: p for p in card(effect, self.structure_name).parameters}

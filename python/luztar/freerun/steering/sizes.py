@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..model import Model
-from .record import Record
+from ...model import Model
+from ..record import Record
 
 # The lowest oscillation of a steering mechanism on its column lies between 2 and 15 Hz; its damping is below critical.
 TYPICAL_HZ = 6.0
@@ -17,8 +17,8 @@ TYPICAL_DAMPING = 0.2
 
 def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
     """Return a positive size for every parameter there may be."""
-    psi = np.concatenate([r.drive_rad for r in records])
-    phi = np.concatenate([r.prepared.effort for r in records])
+    psi = np.concatenate([r.drives["handwheel"] for r in records])
+    phi = np.concatenate([r.channel("roadwheel") for r in records])
     known = model.known
     ratio = known.get("steering.ratio", 16.0)
     # Least squares of phi on psi: the static gain g = p K / (p^2 K + c).
@@ -39,7 +39,7 @@ def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
     inertia = known.get("steering.inertia_kg_m2", total / circular**2)
     inertia = max(inertia, 1e-12)
     viscous = 2.0 * TYPICAL_DAMPING * math.sqrt(total * inertia)
-    speeds = np.concatenate([np.gradient(r.drive_rad, 1.0 / r.rate_hz) for r in records])
+    speeds = np.concatenate([np.gradient(r.drives["handwheel"], 1.0 / r.rate_hz) for r in records])
     fast = float(np.quantile(np.abs(speeds), 0.95)) * gain
     fast = max(fast, 1e-9)
     reach = float(np.quantile(np.abs(psi), 0.95))

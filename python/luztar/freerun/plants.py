@@ -1,0 +1,15 @@
+"""Which plant a model is run with."""
+
+from __future__ import annotations
+
+from ..model import Model
+from .plant import Plant
+from .steering import SteeringPlant
+
+
+def plant_of(model: Model) -> Plant:
+    """Return the plant of a model that runs freely."""
+    return _PLANTS[model.structure_name]
+
+
+_PLANTS: dict[str, Plant] = {"steering": SteeringPlant()}
