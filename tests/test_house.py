@@ -43,7 +43,7 @@ MAY_IMPORT = {
     "projections": FOUNDATION,
     "vehicle": FOUNDATION | {"dynamics"},
     "diagnosis": FOUNDATION | {"measurement", "model"},
-    "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model"},
+    "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model", "vehicle"},
     "planning": FOUNDATION | {"diagnosis", "measurement", "model"},
 }
 # Not even inside a function.

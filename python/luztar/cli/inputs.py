@@ -156,7 +156,7 @@ def unreadable(error: LuztarError, runs: Sequence[Run], model: Model) -> LuztarE
     """Return the error as :class:`UnreadablePart` where a part of a run is the reason, else as it is."""
     if not isinstance(error, MeasurementError | ParameterError):
         return error
-    channels = (None, "time", model.structure.motion, model.structure.effort)
+    channels = (None, "time", *model.structure.channels)
     for run in runs:
         lost = [f for f in run.integrity.findings if f.kind in UNREADABLE and f.channel in channels]
         if run.name in error.where and (lost or not run.integrity.complete):

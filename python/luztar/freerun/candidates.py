@@ -45,7 +45,7 @@ def try_all(fitted: FreeFit, progress: Callable[[int, int], None] | None = None)
     model = fitted.model
     plant = fitted.free_problem.plant
     wanted = plant.candidates(model)
-    top_speed = plant.top_speed(fitted.simulated, fitted.free_problem.data.records)
+    top_speed = plant.top_speed(model, fitted.simulated, fitted.free_problem.data.records)
     found = []
     for i, c in enumerate(wanted):
         if progress is not None:

@@ -135,7 +135,7 @@ class Plant(ABC):
         """
         return None
 
-    def top_speed(self, predicted: Sequence[np.ndarray], records: Sequence[Record]) -> float:
+    def top_speed(self, model: Model, predicted: Sequence[np.ndarray], records: Sequence[Record]) -> float:
         """Return the top speed of the body on which friction acts, from the first channel out."""
         of = zip(predicted, records, strict=True)
         return max(float(np.abs(np.gradient(p[:, 0], 1.0 / r.rate_hz)).max()) for p, r in of)

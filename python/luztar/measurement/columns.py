@@ -41,11 +41,17 @@ QUANTITY: Mapping[str, str] = {
     "handwheel": "angle",
     "roadwheel": "angle",
     "load": "force",
+    "speed": "speed",
+    "yaw_rate": "angular speed",
+    "lateral_acceleration": "acceleration",
+    "roll_angle": "angle",
 }
 
 # Everyday words that other instruments use for other things (engine load in %, pedal position in V): such a column is
 # left alone, with a note, in a file that already has an angle and a torque.
 _EVERYDAY = frozenset({"load", "position"})
+# What a car does: beside channels of a rig or an axis, "speed" may be anything; without its unit it is left alone.
+_OF_A_CAR = frozenset({"speed", "yaw_rate", "lateral_acceleration", "roll_angle"})
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z")
 
@@ -150,10 +156,10 @@ def _settle(key: str, column: Column, factor: float | None, given: str | None, w
     place = f"{where}, column {column.header!r}"
     used = _units.SI_SYMBOL[QUANTITY[key]]
     text = column.header if factor is None else f"{column.header}*{factor:g}"
-    own = _units.find(column.unit) if column.unit is not None else None
+    own = _units.find(column.unit, QUANTITY[key]) if column.unit is not None else None
     asked = None
     if given is not None:
-        asked = _units.parse(given, f"--unit {key}")
+        asked = _units.parse(given, f"--unit {key}", QUANTITY[key])
         if asked.quantity != QUANTITY[key]:
             raise MeasurementError(
                 f"{given!r} measures {asked.quantity}, {key} is kept in {used}",
@@ -177,7 +183,7 @@ def _settle(key: str, column: Column, factor: float | None, given: str | None, w
             f"{key}: {column.header!r} gives no known unit; the factor {factor:g} is taken to make it {used}",
         )
     if column.unit is not None:
-        own = _units.parse(column.unit, place)
+        own = _units.parse(column.unit, place, QUANTITY[key])
         if own.quantity != QUANTITY[key]:
             remedy = f'Give the factor: --map {key}="{column.header}*FACTOR"'
             if key == "torque" and own.quantity == "force":
@@ -246,6 +252,9 @@ def resolve(
             continue
         named = [c for c in columns if c.channel == key and c.index not in taken]
         candidates = [c for c in named if not c.estimated] or named
+        if len(candidates) > 1 and key in _OF_A_CAR:
+            notes.append(f"{key} was not read: {len(candidates)} columns could be it: {_listed(candidates)}")
+            continue
         if len(candidates) > 1:
             raise MeasurementError(
                 f"{len(candidates)} columns could be {key}: {_listed(candidates)}",
@@ -260,8 +269,9 @@ def resolve(
         if key not in picked:
             continue
         column, factor = picked[key]
-        if key in _EVERYDAY and key not in mapped and key not in units and rig:
-            own = _units.find(column.unit) if column.unit else None
+        doubtful = key in _OF_A_CAR or (key in _EVERYDAY and rig)
+        if doubtful and key not in mapped and key not in units:
+            own = _units.find(column.unit, QUANTITY[key]) if column.unit else None
             if own is None or own.quantity != QUANTITY[key]:
                 notes.append(f"the column {column.header!r} was not read: its unit is not one of {QUANTITY[key]}")
                 continue

@@ -45,6 +45,10 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
     "handwheel": ("handwheel", "hand wheel", "handwheel angle", "hand wheel angle"),
     "roadwheel": ("roadwheel", "road wheel", "roadwheel angle", "road wheel angle"),
     "load": ("load", "axial load", "normal load", "last"),
+    "speed": ("speed", "vehicle speed", "forward speed", "longitudinal speed", "geschwindigkeit"),
+    "yaw_rate": ("yaw rate", "yaw velocity", "yawrate", "gierrate", "giergeschwindigkeit"),
+    "lateral_acceleration": ("lateral acceleration", "lateral acc", "ay", "querbeschleunigung"),
+    "roll_angle": ("roll angle", "roll", "wankwinkel"),
 }
 _CHANNEL_OF: dict[str, str] = {name: key for key, names in _NAMES.items() for name in names}
 

@@ -27,6 +27,10 @@ CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(
         "handwheel": "rad",
         "roadwheel": "rad",
         "load": "N",
+        "speed": "m/s",
+        "yaw_rate": "rad/s",
+        "lateral_acceleration": "m/s^2",
+        "roll_angle": "rad",
     }
 )
 

@@ -44,6 +44,7 @@ SI_SYMBOL: Mapping[str, str] = MappingProxyType(
         "mass": "kg",
         "angular speed": "rad/s",
         "speed": "m/s",
+        "acceleration": "m/s^2",
         "none": "1",
     }
 )
@@ -51,6 +52,8 @@ SI_SYMBOL: Mapping[str, str] = MappingProxyType(
 # The international foot and the avoirdupois pound-force are exact by definition (NIST SP 811, appendix B).
 _FOOT_M = 0.3048
 _POUND_FORCE_N = 4.4482216152605
+# Exact by definition (CGPM 1901).
+STANDARD_GRAVITY = 9.80665
 
 # Symbol, quantity, SI size, and every spelling. A spelling is matched exactly: the case of a prefix decides a factor
 # of 10^9 (mN, MN). "nm" is torque because no steering channel is measured in nanometres. "Â°" and "Ââ°" are the
@@ -99,12 +102,14 @@ _TABLE: tuple[tuple[str, str, float, str], ...] = (
     ("mA", "current", 1e-3, "mA"),
     ("kg", "mass", 1.0, "kg"),
     ("g", "mass", 1e-3, "g"),
-    ("rad/s", "angular speed", 1.0, "rad/s rads-1"),
-    ("deg/s", "angular speed", math.pi / 180.0, "deg/s °/s Â°/s Grad/s dps"),
+    ("rad/s", "angular speed", 1.0, "rad/s rads-1 rad_s"),
+    ("deg/s", "angular speed", math.pi / 180.0, "deg/s °/s Â°/s Grad/s dps deg_s"),
     ("rpm", "angular speed", math.pi / 30.0, "rpm 1/min"),
-    ("m/s", "speed", 1.0, "m/s"),
+    ("m/s", "speed", 1.0, "m/s m_s"),
     ("mm/s", "speed", 1e-3, "mm/s"),
-    ("km/h", "speed", 1.0 / 3.6, "km/h kph"),
+    ("km/h", "speed", 1.0 / 3.6, "km/h kph kmh"),
+    ("m/s^2", "acceleration", 1.0, "m/s^2 m/s2 m/s² m/sÂ² m/s**2 m_s2"),
+    ("g", "acceleration", STANDARD_GRAVITY, "gn g0"),
     ("1", "none", 1.0, "1 - % counts count"),
 )
 
@@ -117,10 +122,16 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
 )
 
 
-def find(text: str) -> Unit | None:
-    """Return the unit spelt ``text``, or None where it is not in the table."""
+# What a spelling means where the quantity is known: g is grams, and the acceleration of gravity.
+_BESIDE: Mapping[tuple[str, str], Unit] = MappingProxyType(
+    {("g", "acceleration"): Unit("g", "acceleration", STANDARD_GRAVITY)}
+)
+
+
+def find(text: str, quantity: str = "") -> Unit | None:
+    """Return the unit spelt ``text``, or None where it is not in the table; the quantity decides between meanings."""
     tight = text.strip().strip("[]()").replace(" ", "")
-    return UNITS.get(tight)
+    return _BESIDE.get((tight, quantity)) or UNITS.get(tight)
 
 
 def nearest(text: str) -> list[str]:
@@ -134,7 +145,7 @@ def nearest(text: str) -> list[str]:
     return [by_fold[f] for f in found]
 
 
-def parse(text: str, where: str) -> Unit:
+def parse(text: str, where: str, quantity: str = "") -> Unit:
     """Return the unit spelt ``text``.
 
     Parameters
@@ -143,13 +154,15 @@ def parse(text: str, where: str) -> Unit:
         The spelling, with or without brackets and spaces.
     where : str
         File and column, for the message.
+    quantity : str
+        What it is to measure, where a spelling has two meanings.
 
     Raises
     ------
     MeasurementError
         Where the spelling is not in the table; the remedy holds the nearest ones.
     """
-    unit = find(text)
+    unit = find(text, quantity)
     if unit is None:
         guesses = nearest(text)
         remedy = f"Did you mean {' or '.join(guesses)}?" if guesses else "Use one of s, ms, deg, rad, Nm, N, m, mm."

@@ -5,12 +5,13 @@ from __future__ import annotations
 import difflib
 import functools
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import _core
 from ..errors import ModelError
-from . import axis_words, steering_words
+from . import axis_words, car_words, steering_words
 
 # An axis has newtons and metres where a rig has newton metres and radians. A phase stays an angle.
 _AXIS_UNITS = (("kg_m2", "kg"), ("nm", "n"), ("rad3", "m3"), ("rad2", "m2"), ("rad", "m"))
@@ -153,8 +154,16 @@ def _all(structure: str) -> dict[str, Card]:
             raw |= {"typical": "", **steering_words.WORDS[raw["name"]]}
             parameters = tuple(_for_steering(raw["name"], p) for p in parameters)
             parameters = tuple(p for p in parameters if p.key not in steering_words.RIGID)
+        if structure == "car":
+            if raw["name"] not in car_words.WORDS:
+                continue
+            raw |= {"typical": "", **car_words.WORDS[raw["name"]]}
+            parameters = tuple(_for_car(raw["name"], p) for p in parameters)
+            parameters = tuple(p for p in parameters if p.key not in steering_words.RIGID)
         fields: dict[str, Any] = {**raw, "structures": tuple(raw["structures"]), "parameters": parameters}
         found[raw["name"]] = Card(**fields)
+    if structure == "car":
+        found |= {str(words["name"]): _car_only(words) for words in car_words.CAR_ONLY}
     return found
 
 
@@ -164,34 +173,51 @@ def _for_steering(effect: str, p: Parameter) -> Parameter:
     return replace(p, **steering_words.MEANINGS.get(p.key, {}))
 
 
+def _for_car(effect: str, p: Parameter) -> Parameter:
+    if effect == "offset":
+        return replace(p, key="handwheel_rad", meaning="what is added to the recorded handwheel angle")
+    return replace(p, **car_words.MEANINGS.get(p.key, {}))
+
+
+# What a card says that stands outside the catalogue of the core.
+_PLAIN: dict[str, Any] = {
+    "behind_gap": False,
+    "per_turn": False,
+    "shapes_others": True,
+    "becomes": None,
+    "channel": None,
+    "needs": None,
+    "structures": (),
+}
+
+
+def _car_only(words: Mapping[str, Any]) -> Card:
+    parameters = tuple(
+        Parameter(key, symbol, meaning, low, high, "linear", None)
+        for key, symbol, meaning, low, high in words["parameters"]
+    )
+    return Card(**{**_PLAIN, **words, "parameters": parameters})
+
+
 @functools.cache
 def own_cards(structure: str) -> tuple[Card, ...]:
     """Return the cards of a structure's own parameters; none where all belong to effects."""
-    return (_steering(),) if structure == "steering" else ()
+    if structure == "steering":
+        equation = "I phi'' = p K luz(psi - p phi, gap/2) - c phi - friction"
+        return (_own("steering", "steering mechanism", steering_words.OWN, equation, "paper eq. (5)"),)
+    if structure == "car":
+        source = "luztar.vehicle: single-track or lateral-yaw-roll model"
+        return tuple(_own(name, title, own, "", source) for name, (title, own) in car_words.OWN.items())
+    return ()
 
 
-def _steering() -> Card:
+def _own(name: str, title: str, own: Iterable[tuple[str, str, str, float]], equation: str, source: str) -> Card:
     parameters = tuple(
-        Parameter(key, symbol, meaning, low, math.inf, "linear", None)
-        for key, symbol, meaning, low in steering_words.OWN
+        Parameter(key, symbol, meaning, low, math.inf, "linear", None) for key, symbol, meaning, low in own
     )
     words = dict.fromkeys(("look", "cause", "check", "typical"), "")
-    return Card(
-        **words,
-        name="steering",
-        title="steering mechanism",
-        kind="structure",
-        equation="I phi'' = p K luz(psi - p phi, gap/2) - c phi - friction",
-        source="paper eq. (5)",
-        behind_gap=False,
-        per_turn=False,
-        shapes_others=True,
-        becomes=None,
-        channel=None,
-        needs=None,
-        structures=(),
-        parameters=parameters,
-    )
+    words |= {"name": name, "title": title, "kind": "structure", "equation": equation, "source": source}
+    return Card(**{**_PLAIN, **words, "parameters": parameters})
 
 
 def cards(structure: str = "rig") -> tuple[Card, ...]:
@@ -200,7 +226,8 @@ def cards(structure: str = "rig") -> tuple[Card, ...]:
     Parameters
     ----------
     structure : str
-        ``rig``, ``axis`` or ``steering``: decides the units in the parameters' keys and which effects there are.
+        ``rig``, ``axis``, ``steering`` or ``car``: decides the units in the parameters' keys and which
+        effects there are.
     """
     return tuple(_all(structure).values())
 
@@ -222,6 +249,8 @@ def card(name: str, structure: str = "rig") -> Card:
     near = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
     guess = f"Did you mean {' or '.join(near)}? " if near else ""
     listed = ", ".join(c.name for c in known.values() if not c.is_decoy)
-    if structure == "steering" and name in _all("rig"):
-        raise ModelError(f"'{name}' is no effect of a steering model", "effects", f"{guess}Its effects are: {listed}.")
+    if structure in ("steering", "car") and name in _all("rig"):
+        raise ModelError(
+            f"'{name}' is no effect of a {structure} model", "effects", f"{guess}Its effects are: {listed}."
+        )
     raise ModelError(f"there is no effect '{name}'", "effects", f"{guess}Known effects: {listed}.")

@@ -16,7 +16,20 @@ from .structure import Structure, structure
 if TYPE_CHECKING:
     import os
 
-_POSITIVE = ("steering.inertia_kg_m2", "steering.ratio", "steering.stiffness_nm_per_rad")
+# Given, they must be above 0.
+_POSITIVE = (
+    "steering.inertia_kg_m2",
+    "steering.ratio",
+    "steering.stiffness_nm_per_rad",
+    "body.mass_kg",
+    "body.yaw_inertia_kg_m2",
+    "body.front_axle_m",
+    "body.rear_axle_m",
+    "front.cornering_n_per_rad",
+    "rear.cornering_n_per_rad",
+)
+# Given for a structure as a whole: what it is.
+_WHOLE = {("axis", "pitch_m"): "the travel per turn", ("car", "speed_m_s"): "the speed of all runs"}
 
 
 @dataclass(frozen=True)
@@ -53,8 +66,8 @@ class Model:
     Attributes
     ----------
     structure_name : str
-        ``rig`` (angle in, torque out), ``axis`` (position in, force out) or ``steering`` (handwheel in, road wheel
-        out).
+        ``rig`` (angle in, torque out), ``axis`` (position in, force out), ``steering`` (handwheel in, road wheel
+        out) or ``car`` (handwheel and speed in, motion of the car out).
     effects : tuple of str
         Names of the catalogue.
     known : mapping
@@ -114,9 +127,9 @@ class Model:
     def _check(self, where: str, key: str, value: float) -> None:
         if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
             raise ModelError(f"{key} is {value!r}", where, "Give a finite number.")
-        if key == "pitch_m" and self.structure_name == "axis":
+        if (self.structure_name, key) in _WHOLE:
             if value <= 0:
-                raise ModelError(f"pitch_m is {value}", where, "Give the travel per turn, above 0.")
+                raise ModelError(f"{key} is {value}", where, f"Give {_WHOLE[self.structure_name, key]}, above 0.")
             return
         effect, _, parameter = key.partition(".")
         if effect not in self.effects and effect not in (c.name for c in own_cards(self.structure_name)):
@@ -133,7 +146,8 @@ class Model:
 
     def _whole_key(self, key: str) -> str:
         """Return the key with the structure's name where a short one was given (``ratio``)."""
-        return f"{self.structure_name}.{SHORT_KEYS[key]}" if self.structure.is_free and key in SHORT_KEYS else key
+        short = self.structure.is_free and key in SHORT_KEYS
+        return f"steering.{SHORT_KEYS[key]}" if short else key
 
     @classmethod
     def rig(cls, **comparison: Any) -> Model:
@@ -161,6 +175,29 @@ class Model:
         if wrong:
             raise ModelError(f"there is no '{wrong[0]}'", "Model.steering", f"Known are: {', '.join(SHORT_KEYS)}.")
         return cls("steering", structure("steering").effects, known)
+
+    @classmethod
+    def car(cls, known: Mapping[str, float], *, estimate: Iterable[str] = ()) -> Model:
+        """Return the model of a car: handwheel and speed in, motion of the car out; a linear car, viscous steering.
+
+        Parameters
+        ----------
+        known : mapping of str to float
+            What is given, keys of ``luztar.vehicle.Car`` (``{k: p.value for k, p in car.parameters.items()}``); keys
+            that a car model has no use for are left out. Mass, axles and steering ratio must be given; cornering
+            stiffnesses, yaw inertia and viscous friction are estimated where they are not.
+        estimate : iterable of str
+            Keys that are estimated although they are given: their values are where the search starts.
+        """
+        own = {f"{c.name}.{p.key}" for c in own_cards("car") for p in c.parameters}
+        own |= {"viscous.coefficient_nm_s_per_rad", "speed_m_s"}
+        wanted = set(estimate)
+        wrong = sorted(wanted - own)
+        if wrong:
+            raise ModelError(f"there is no '{wrong[0]}'", "Model.car", f"Known are: {', '.join(sorted(own))}.")
+        given = {k: v for k, v in known.items() if k in own}
+        start = {k: v for k, v in given.items() if k in wanted}
+        return cls("car", structure("car").effects, {k: v for k, v in given.items() if k not in wanted}, start)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Model:

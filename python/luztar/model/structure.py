@@ -25,6 +25,9 @@ class Structure:
     unknown_travel_share : float
         The friction state of a run is unknown until its first motion has run through the widest gap or break-away to be
         expected, as a share of the range: 3.6 degrees of 120 for a steering wheel, a thousandth for a driven axis.
+    outputs : tuple of str
+        The channels that are explained, where there are several; they are then compared in multiples of their noise
+        (unit sigma).
     """
 
     name: str
@@ -35,6 +38,12 @@ class Structure:
     effects: tuple[str, ...]
     band_hz: float | None
     unknown_travel_share: float
+    outputs: tuple[str, ...] = ()
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channels of a run that belong to the structure, whether recorded or not."""
+        return (self.motion, *(self.outputs or (self.effort,)))
 
     @property
     def turns(self) -> bool:
@@ -44,7 +53,7 @@ class Structure:
     @property
     def is_free(self) -> bool:
         """Whether the model is run freely, motion out, instead of being asked for the effort of a given motion."""
-        return self.name == "steering"
+        return self.name in ("steering", "car")
 
     def hysteresis(self, motion_range: float) -> float:
         """Return how far the motion must come back to count as a reversal, in its unit."""
@@ -64,6 +73,17 @@ STRUCTURES = {
     "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0, 0.03),
     "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0, 0.001),
     "steering": Structure("steering", "handwheel", "roadwheel", "rad", "rad", ("viscous",), None, 0.0),
+    "car": Structure(
+        "car",
+        "handwheel",
+        "response",
+        "rad",
+        "sigma",
+        ("viscous",),
+        None,
+        0.0,
+        ("yaw_rate", "lateral_acceleration", "roll_angle", "roadwheel", "speed"),
+    ),
 }
 
 

@@ -14,7 +14,7 @@ from ...model import Card, Model
 from ..parameters import Parameters
 from ..plant import Plant
 from ..record import Record
-from .handwheel import smoothed
+from ..smoothing import smoothed
 from .predict import predict
 from .sizes import sizes_of
 
