@@ -146,7 +146,8 @@ def drive(
 ) -> dict[str, np.ndarray]:
     """Return what a car does, from straight driving, at some instants."""
     dry = car.kinetic > 0.0 or car.static > 0.0
-    held = max(car.static, car.kinetic)
+    # A little above the kinetic level, so that what breaks away is pulled on and does not stand again by rounding.
+    held = max(car.static, car.kinetic) * (1.0 + 1e-9)
     states = np.zeros((times.size, 8))
     end = float(times[-1])
     t, y = float(times[0]), np.zeros(8)
@@ -203,7 +204,6 @@ def drive(
         pull = torque(t, y)
         if side == 0:
             side = 1 if pull > 0.0 else -1
-            # Beyond the level by rounding: friction lets go.
         else:
             y[7] = 0.0
             side = 0 if abs(pull) <= held else (1 if pull > 0.0 else -1)
