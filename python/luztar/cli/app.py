@@ -331,9 +331,9 @@ def explain(
     if effect is None:
         say({"schema": 1, "effects": listed()} if json else list_text())
     else:
-        from ..model import card
+        from ..model import find_card
 
-        found = card(effect.strip().lower().replace("-", "_").replace(" ", "_"))
+        found = find_card(effect.strip().lower().replace("-", "_").replace(" ", "_"))
         say({"schema": 1, **found.to_dict()} if json else card_text(found))
         if report is not None:
             write_card(report, found)

@@ -14,9 +14,9 @@ WIDTH = 100
 
 def listed() -> list[dict[str, Any]]:
     """Return name, title and kind of every effect that stands for something physical."""
-    from ..model import cards
+    from ..model import every_card
 
-    return [{"name": c.name, "title": c.title, "kind": c.kind} for c in cards() if not c.is_decoy]
+    return [{"name": c.name, "title": c.title, "kind": c.kind} for c in every_card() if not c.is_decoy]
 
 
 def list_text() -> str:

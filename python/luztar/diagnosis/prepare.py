@@ -77,6 +77,8 @@ class Prepared:
     duration_s : float
     has_load : bool
         Whether the load was recorded.
+    channel : str
+        The channel of ``effort`` where a structure explains several; else empty.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Prepared:
     step_s: float
     duration_s: float
     has_load: bool
+    channel: str = ""
 
 
 def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:

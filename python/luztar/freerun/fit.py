@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from ..diagnosis.flags import Flag
 from ..diagnosis.floor import NoiseFloor
 from ..diagnosis.misfit import misfit
 from ..model import Model
+from .channels import ChannelError, channel_errors
 from .floor import noise_floor
 from .intervals import estimates
 from .least_squares import Data
@@ -41,6 +42,23 @@ class FreeFit(Fit):
     free_problem: Problem = field(repr=False)
     solution: Solution = field(repr=False)
     simulated: tuple[np.ndarray, ...] = field(repr=False)
+
+    @functools.cached_property
+    def channels(self) -> tuple[ChannelError, ...]:
+        """The error by channel, where the structure explains several; else nothing."""
+        return channel_errors(self) if self.model.structure.outputs else ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit as the JSON interface prints it, with the error of every channel where there are several."""
+        made = super().to_dict()
+        if self.channels:
+            made["channels"] = {c.channel: c.to_dict() for c in self.channels}
+        return made
+
+    def __str__(self) -> str:
+        return "\n".join([super().__str__(), *map(str, self.channels)])
+
+    __repr__ = __str__
 
     @functools.cached_property
     def flags(self) -> tuple[Flag, ...]:

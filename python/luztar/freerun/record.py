@@ -192,6 +192,7 @@ def _record(number: int, run: Run, plant: Plant, model: Model, channels: Sequenc
             step_s=1.0 / rate,
             duration_s=run.duration_s,
             has_load=False,
+            channel="" if len(channels) == 1 else channel,
         )
         for channel, values in zip(channels, outs, strict=True)
     )

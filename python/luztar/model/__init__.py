@@ -4,6 +4,8 @@ from .cards import Card as Card
 from .cards import Parameter as Parameter
 from .cards import card as card
 from .cards import cards as cards
+from .cards import every_card as every_card
+from .cards import find_card as find_card
 from .file import load as load
 from .model import Comparison as Comparison
 from .model import Effect as Effect

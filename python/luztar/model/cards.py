@@ -232,6 +232,24 @@ def cards(structure: str = "rig") -> tuple[Card, ...]:
     return tuple(_all(structure).values())
 
 
+def every_card() -> tuple[Card, ...]:
+    """Return the cards of the catalogue, in the words of a rig, then those that only a car has."""
+    catalogue = cards()
+    known = {c.name for c in catalogue}
+    return (*catalogue, *(c for c in cards("car") if c.name not in known))
+
+
+def find_card(name: str) -> Card:
+    """Return the card of an effect of any structure, in the words of a rig where a rig has it.
+
+    Raises
+    ------
+    ModelError
+        Where there is no such effect.
+    """
+    return next((c for c in every_card() if c.name == name), None) or card(name)
+
+
 def card(name: str, structure: str = "rig") -> Card:
     """Return the card of one effect.
 

@@ -244,7 +244,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
 
 def _comparison_filter(study: Study) -> str:
     if study.model.structure.is_free:
-        return "none: the angles are compared as recorded"
+        return "none: the channels are compared as recorded"
     text = "low pass of 4 poles, forward and backward, the same on measurement and model"
     if study.model.comparison.filter_already_applied:
         text += "; the measurement was filtered before and is not filtered again"

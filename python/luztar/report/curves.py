@@ -18,6 +18,8 @@ FIGURE_POINTS = 16000
 # More panels than this do not fit a page; the others are left to the numbers.
 MOST_PANELS = 12
 PANEL_HEIGHT = 150
+# Of one of several panels of loops.
+LOOP_HEIGHT = 260
 
 
 def loops(fit: Fit) -> Any:
@@ -27,13 +29,17 @@ def loops(fit: Fit) -> Any:
     ----------
     fit : Fit
     """
-    picture = plotly().Figure()
-    for trace in _loop_traces(fit, AFTER, "model", _budget(2 * len(fit.runs))):
-        picture.add_trace(trace)
+    channels = _channels(fit)
+    picture = panels(rows=len(channels), cols=1, shared_xaxes=True, vertical_spacing=0.04)
+    for row, channel in enumerate(channels, start=1):
+        for trace in _loop_traces(fit, channel, AFTER, "model", _budget(2 * len(fit.runs))):
+            trace.showlegend = bool(trace.showlegend) and row == 1
+            picture.add_trace(trace, row=row, col=1)
+        picture.update_yaxes(title_text=_effort(fit, channel), row=row, col=1)
     _, motion, unit = motion_axis(fit.model.structure)
-    picture.update_xaxes(title_text=f"{motion} [{unit}]")
-    picture.update_yaxes(title_text=_effort(fit))
-    return dressed(picture, height=500, title="Measured and modelled loops", legend=True)
+    picture.update_xaxes(title_text=f"{motion} [{unit}]", row=len(channels), col=1)
+    height = 500 if len(channels) == 1 else 80 + LOOP_HEIGHT * len(channels)
+    return dressed(picture, height=height, title="Measured and modelled loops", legend=True)
 
 
 def loops_before_after(study: Study) -> Any:
@@ -46,18 +52,29 @@ def loops_before_after(study: Study) -> Any:
     first, last = study.steps[0].fit, study.steps[-1].fit
     added = len(study.steps) > 1
     titles = ["model as given", f"after step {len(study.steps) - 1}"] if added else ["model as given"]
-    picture = panels(rows=1, cols=len(titles), subplot_titles=titles, shared_yaxes=True, horizontal_spacing=0.04)
+    channels = _channels(first)
+    picture = panels(
+        rows=len(channels),
+        cols=len(titles),
+        subplot_titles=titles,
+        shared_yaxes=True,
+        horizontal_spacing=0.04,
+        vertical_spacing=0.04,
+    )
     for column, fit in enumerate([first, last][: len(titles)], start=1):
         colour = BEFORE if column == 1 and added else AFTER
         words = ("model as given" if added else "model") if column == 1 else "model after the last step"
-        for trace in _loop_traces(fit, colour, words, _budget(4 * len(fit.runs))):
-            # The measurement is the same on both sides: one entry in the legend switches both.
-            trace.showlegend = bool(trace.showlegend) and (column == 1 or trace.legendgroup != "measured")
-            picture.add_trace(trace, row=1, col=column)
+        for row, channel in enumerate(channels, start=1):
+            for trace in _loop_traces(fit, channel, colour, words, _budget(4 * len(fit.runs))):
+                # The measurement is the same on both sides: one entry in the legend switches both.
+                named = row == 1 and (column == 1 or trace.legendgroup != "measured")
+                trace.showlegend = bool(trace.showlegend) and named
+                picture.add_trace(trace, row=row, col=column)
+            if column == 1:
+                picture.update_yaxes(title_text=_effort(first, channel), row=row, col=1)
     _, motion, unit = motion_axis(first.model.structure)
-    picture.update_xaxes(title_text=f"{motion} [{unit}]")
-    picture.update_yaxes(title_text=_effort(first), col=1)
-    return dressed(picture, height=460, legend=True)
+    picture.update_xaxes(title_text=f"{motion} [{unit}]", row=len(channels))
+    return dressed(picture, height=460 if len(channels) == 1 else 80 + LOOP_HEIGHT * len(channels), legend=True)
 
 
 def residual_time(fit: Fit) -> Any:
@@ -96,12 +113,13 @@ def residual_time(fit: Fit) -> Any:
     return dressed(picture, height=80 + PANEL_HEIGHT * len(shown))
 
 
-def _loop_traces(fit: Fit, colour: str, words: str, points: int) -> list[Any]:
+def _loop_traces(fit: Fit, channel: str, colour: str, words: str, points: int) -> list[Any]:
     go = plotly()
     factor, _, _ = motion_axis(fit.model.structure)
     measured: list[Any] = []
     modelled: list[Any] = []
-    for number, (r, predicted) in enumerate(zip(fit.runs, fit.predicted, strict=True)):
+    chosen = [(r, p) for r, p in zip(fit.runs, fit.predicted, strict=True) if r.channel == channel]
+    for number, (r, predicted) in enumerate(chosen):
         x = r.motion[r.usable] * factor
         for values, into, name, line in (
             (r.effort, measured, "measured", {"color": MEASURED, "width": 3.5}),
@@ -128,6 +146,11 @@ def _budget(traces: int) -> int:
     return max(min(MAX_POINTS, FIGURE_POINTS // max(traces, 1)), 200)
 
 
-def _effort(fit: Fit) -> str:
+def _channels(fit: Fit) -> list[str]:
+    """Return the channels that are explained, in their order; one without a name where there is only one."""
+    return list(dict.fromkeys(r.channel for r in fit.runs))
+
+
+def _effort(fit: Fit, channel: str) -> str:
     structure = fit.model.structure
-    return f"{structure.effort} [{structure.effort_unit}]"
+    return f"{(channel or structure.effort).replace('_', ' ')} [{structure.effort_unit}]"
