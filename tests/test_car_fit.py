@@ -25,9 +25,9 @@ UNITS = {
 NEAR_NOISE = 1.05
 
 
-def generated(truth: CarTruth, seed: int, *, runs: int = 3, **how) -> list[luztar.Run]:
+def generated(truth: CarTruth, seed: int, *, runs: int = 3, seconds: float = 10.0, **how) -> list[luztar.Run]:
     chance = np.random.default_rng(seed)
-    made = [car_run(truth, chance, **how) for _ in range(runs)]
+    made = [car_run(truth, chance, seconds=seconds, **how) for _ in range(runs)]
     return [luztar.Run(name=f"run{i}", units={k: UNITS[k] for k in run}, **run) for i, run in enumerate(made)]
 
 
@@ -174,7 +174,7 @@ def test_a_car_without_mass_speed_or_motion_is_refused_by_name():
 
 def test_a_file_of_a_car_is_read_and_its_model_is_a_file(tmp_path):
     path = tmp_path / "run.csv"
-    rows = "\n".join(f"{i / 100:g},{math.sin(i / 30):g},{72 + 0 * i},{math.sin(i / 30):g},0.1" for i in range(40))
+    rows = "\n".join(f"{i / 100:g},{math.sin(i / 30):g},72,{math.sin(i / 30):g},0.1" for i in range(40))
     path.write_text(
         f"time_s,handwheel_deg,Vehicle speed [km/h],Yaw velocity [deg/s],lateral acceleration [g]\n{rows}\n"
     )
