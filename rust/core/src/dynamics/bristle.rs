@@ -88,20 +88,22 @@ pub(super) fn step(
     let drift = pace.h * half;
     let middle = phi + drift * v;
     let (psi, load) = span.middle();
-    let full = bristle.full(body, v);
-    let state = bristle.walk(carried.bristle, middle - phi, full);
+    let state = bristle.walk(carried.bristle, middle - phi, bristle.full(body, v));
     let dry = body.base::<EVERY>(middle, load) * state + body.asymmetric_coulomb * state.abs();
-    // The damping of the deformation's rate is a viscous friction that fades as the state comes to its end.
-    let damping = bristle.damping * (Pure::ONE - v.side() * state / full);
-    let k = pace.rate * (body.linear(Pure::ONE) + damping) * half;
-    let gain = pace.rate / (Pure::ONE + k);
     let net = body.torque::<EVERY>(psi, load, middle) - dry;
-    let straight = v * (Pure::ONE - k) / (Pure::ONE + k) + gain * net;
     // Stribeck's part goes with the state; LuGre has it in the end of the state.
     let side = Pure::ZERO.when(bristle.lugre.0 > 0.0, state);
-    let guess = straight - gain * body.curved(v, side);
-    let at_speed = (v + guess) * half;
-    let speed = straight - gain * body.curved(at_speed, side);
+    // The damping of the deformation's rate is a viscous friction that fades as the state comes to its end.
+    let damping = |at_speed: Pure| {
+        bristle.damping * (Pure::ONE - at_speed.side() * state / bristle.full(body, at_speed))
+    };
+    // What depends on the speed is predicted at the speed of the start, then taken at the middle.
+    let end = |at_speed: Pure| {
+        let k = pace.rate * (body.linear(Pure::ONE) + damping(at_speed)) * half;
+        (v * (Pure::ONE - k) + pace.rate * (net - body.curved(at_speed, side))) / (Pure::ONE + k)
+    };
+    let at_speed = (v + end(v)) * half;
+    let speed = end(at_speed);
     let phi_next = middle + drift * speed;
     let turns = (speed * v).0 < 0.0;
     let fall = (v - speed).when(turns, Pure::ONE);
@@ -112,7 +114,7 @@ pub(super) fn step(
         moving: (v / fall).when(turns, Pure::ONE),
         stuck: Pure::ZERO,
         speed_turn: Pure::ZERO.when(turns, speed),
-        grip: dry + body.stribeck_torque(at_speed, side) + damping * (v + speed) * half,
+        grip: dry + body.stribeck_torque(at_speed, side) + damping(at_speed) * (v + speed) * half,
         carried: Carried {
             rest_s: Pure::ZERO,
             bristle: bristle.walk(state, phi_next - middle, bristle.full(body, speed)),
