@@ -11,7 +11,7 @@ use crate::projections::stop;
 
 use super::drive::Span;
 use super::number::Pure;
-use super::one_mass::{EVERY, OneMass};
+use super::one_mass::{CURVED, LUGRE, OneMass};
 use super::split::{Carried, Pace, Step};
 
 /// How many values a [`Bristle`] has.
@@ -68,7 +68,10 @@ impl Bristle<Pure> {
 
     /// The end of the friction state at a speed: 1, and with `LuGre` Stribeck's level over Coulomb's.
     #[inline(always)]
-    fn full(&self, body: &OneMass<Pure>, speed: Pure) -> Pure {
+    fn full<const WITH: usize>(&self, body: &OneMass<Pure>, speed: Pure) -> Pure {
+        if WITH & LUGRE == 0 {
+            return Pure::ONE;
+        }
         let extra = body.stribeck_torque(speed, Pure::ONE);
         let dry = body.coulomb.when(self.lugre.0 > 0.0, Pure::ONE);
         (Pure::ONE + extra / dry).when(self.lugre.0 > 0.0, Pure::ONE)
@@ -77,7 +80,7 @@ impl Bristle<Pure> {
 
 /// One sub-step of a body on an elastic contact: half a drift, the torque in the middle, the other half.
 #[inline(always)]
-pub(super) fn step(
+pub(super) fn step<const WITH: usize>(
     body: &OneMass<Pure>,
     span: &Span,
     pace: Pace,
@@ -88,20 +91,29 @@ pub(super) fn step(
     let drift = pace.h * half;
     let middle = phi + drift * v;
     let (psi, load) = span.middle();
-    let state = bristle.walk(carried.bristle, middle - phi, bristle.full(body, v));
-    let dry = body.base::<EVERY>(middle, load) * state + body.asymmetric_coulomb * state.abs();
-    let net = body.torque::<EVERY>(psi, load, middle) - dry;
+    let state = bristle.walk(carried.bristle, middle - phi, bristle.full::<WITH>(body, v));
+    let dry = body.base::<WITH>(middle, load) * state + body.asymmetric_coulomb * state.abs();
+    let net = body.torque::<WITH>(psi, load, middle) - dry;
     // Stribeck's part goes with the state; LuGre has it in the end of the state.
     let side = Pure::ZERO.when(bristle.lugre.0 > 0.0, state);
     // The damping of the deformation's rate is a viscous friction that fades as the state comes to its end.
     let damping = |at_speed: Pure| {
-        bristle.damping * (Pure::ONE - at_speed.side() * state / bristle.full(body, at_speed))
+        if WITH & LUGRE == 0 {
+            return Pure::ZERO;
+        }
+        bristle.damping
+            * (Pure::ONE - at_speed.side() * state / bristle.full::<WITH>(body, at_speed))
     };
-    // What depends on the speed is predicted at the speed of the start, then taken at the middle.
     let end = |at_speed: Pure| {
         let k = pace.rate * (body.linear(Pure::ONE) + damping(at_speed)) * half;
-        (v * (Pure::ONE - k) + pace.rate * (net - body.curved(at_speed, side))) / (Pure::ONE + k)
+        let curved = if WITH & CURVED == 0 {
+            Pure::ZERO
+        } else {
+            body.curved(at_speed, side)
+        };
+        (v * (Pure::ONE - k) + pace.rate * (net - curved)) / (Pure::ONE + k)
     };
+    // What depends on the speed is predicted at the speed of the start, then taken at the middle.
     let at_speed = (v + end(v)) * half;
     let speed = end(at_speed);
     let phi_next = middle + drift * speed;
@@ -114,10 +126,11 @@ pub(super) fn step(
         moving: (v / fall).when(turns, Pure::ONE),
         stuck: Pure::ZERO,
         speed_turn: Pure::ZERO.when(turns, speed),
+        // For the energies only: a lane's compiler leaves it out.
         grip: dry + body.stribeck_torque(at_speed, side) + damping(at_speed) * (v + speed) * half,
         carried: Carried {
             rest_s: Pure::ZERO,
-            bristle: bristle.walk(state, phi_next - middle, bristle.full(body, speed)),
+            bristle: bristle.walk(state, phi_next - middle, bristle.full::<WITH>(body, speed)),
         },
     }
 }
