@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from generators.rig import simulate_rig_set
 
 import luztar
+from generators.rig import simulate_rig_set
 
 HIDDEN = {"stribeck": {"extra_nm": 0.3, "speed_rad_s": 0.08}}
 # Twice the standard error that six strokes leave of an offset, with a wander of 0.02 Nm.
