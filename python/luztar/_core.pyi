@@ -41,6 +41,7 @@ __all__ = [
     "rolling",
     "simulate_steering",
     "solve_block",
+    "steering_highest_rad_s",
     "steering_parameters",
     "steering_summary_names",
     "summarise_steering",
@@ -437,6 +438,7 @@ def held_out(
 # dynamics
 
 def steering_parameters() -> list[str]: ...
+def steering_highest_rad_s(parameters: NDArray[np.float64], wound_rad: float) -> NDArray[np.float64]: ...
 def simulate_steering(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model import Card
 from .fit import FreeFit
+from .plant import Motion
 from .solve import Solution, solve_with
 
 
@@ -44,14 +45,15 @@ def try_all(fitted: FreeFit, progress: Callable[[int, int], None] | None = None)
     """Return every candidate by its unseen loss, the best first."""
     model = fitted.model
     plant = fitted.free_problem.plant
-    wanted = plant.candidates(model)
-    top_speed = plant.top_speed(model, fitted.simulated, fitted.free_problem.data.records)
+    records = fitted.free_problem.data.records
+    wanted = plant.candidates(model, records)
+    moved = Motion(model, records, fitted.simulated)
     found = []
     for i, c in enumerate(wanted):
         if progress is not None:
             progress(i, len(wanted))
         solved = solve_with(fitted.free_problem, model + c.name, fitted.solution.found, c.name)
-        found.append(Candidate(c, solved, plant.same_as(c, solved.found, top_speed)))
+        found.append(Candidate(c, solved, plant.same_as(c, solved.found, moved)))
     if progress is not None:
         progress(len(wanted), len(wanted))
     return sorted(found, key=lambda c: c.solution.held_out_loss)

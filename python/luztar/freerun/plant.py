@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -40,6 +41,8 @@ class Plant(ABC):
         What must be above 0, and how far below its size the search goes.
     one_sided : frozenset of str
         What may not be negative, whatever its card says.
+    choices : frozenset of str
+        What is no size but one of two kinds.
     pairs : mapping
         What separates two effects, in words.
     """
@@ -51,6 +54,7 @@ class Plant(ABC):
     structure_grid: ClassVar[Mapping[str, tuple[float, ...]]]
     least_share: ClassVar[Mapping[str, float]]
     one_sided: ClassVar[frozenset[str]]
+    choices: ClassVar[frozenset[str]] = frozenset()
     pairs: ClassVar[Mapping[frozenset[str], str]]
 
     @abstractmethod
@@ -114,31 +118,44 @@ class Plant(ABC):
         """Return the value at which a parameter does next to nothing; None leaves it where it is."""
         return None if key == "stribeck.speed_rad_s" else NEXT_TO_NOTHING * size
 
-    def candidates(self, model: Model) -> tuple[Card, ...]:
-        """Return the cards of the effects that a diagnosis tries."""
+    def candidates(self, model: Model, records: Sequence[Record]) -> tuple[Card, ...]:
+        """Return the cards of the effects that a diagnosis of these records tries."""
         return tuple(
             c
             for c in cards(model.structure_name)
-            if c.name not in model.effects and (c.needs is None or c.needs in model.effects)
+            if c.name not in model.effects
+            and c.is_searched_on(model.structure_name)
+            and (c.needs is None or c.needs in model.effects)
         )
 
-    def same_as(self, card: Card, found: Mapping[str, float], top_speed: float) -> str | None:
+    def same_as(self, card: Card, solved: Mapping[str, float], moved: Motion) -> str | None:
         """Return the simpler effect that a candidate came out as.
 
         Parameters
         ----------
         card : Card
-        found : mapping
-            Its parameters.
-        top_speed : float
-            Of the body on which friction acts, as the model without the candidate moves.
+        solved : mapping
+            The parameters of the model with the candidate.
+        moved : Motion
+            How the model without it moves.
         """
         return None
 
-    def top_speed(self, model: Model, predicted: Sequence[np.ndarray], records: Sequence[Record]) -> float:
-        """Return the top speed of the body on which friction acts, from the first channel out."""
-        of = zip(predicted, records, strict=True)
-        return max(float(np.abs(np.gradient(p[:, 0], 1.0 / r.rate_hz)).max()) for p, r in of)
+
+@dataclass(frozen=True)
+class Motion:
+    """How a fitted model moves along its records.
+
+    Attributes
+    ----------
+    model : Model
+    records : sequence of Record
+    simulated : sequence of ndarray, shape (n, outputs)
+    """
+
+    model: Model
+    records: Sequence[Record]
+    simulated: Sequence[np.ndarray]
 
 
 def keys_of(model: Model) -> tuple[str, ...]:

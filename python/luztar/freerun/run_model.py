@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from .._arrays import vector
 from ..dynamics import COLUMNS, Trace, trace
+from ..dynamics.lanes import table
 from ..errors import ModelError
 from ..model import Model
 from .plant import keys_of
@@ -63,10 +65,8 @@ def run_model(model: Model, handwheel_rad: Any, *, sample_rate_hz: float) -> Tra
     given = parameters_given(model)
     psi = vector("handwheel_rad", handwheel_rad, minimum=2)
     physical = {k: v for k, v in given.items() if k in COLUMNS}
-    k3 = max(physical.get("hardening.coefficient_nm_per_rad3", 0.0), 0.0)
-    tangent = physical["steering.stiffness_nm_per_rad"] + 3.0 * k3 * float(np.abs(psi).max()) ** 2
-    springs = physical["steering.ratio"] ** 2 * tangent + physical.get("steering.aligning_nm_per_rad", 0.0)
-    highest = math.sqrt(springs / physical["steering.inertia_kg_m2"])
+    rows, _ = table(physical)
+    highest = float(_core.steering_highest_rad_s(rows, float(np.abs(psi).max()))[0])
     substeps = max(1, math.ceil(STEPS_PER_RADIAN * highest / sample_rate_hz))
     made = trace(physical, psi, sample_rate_hz=sample_rate_hz, substeps=substeps)
     late, shift = given.get("delay.time_s", 0.0), given.get("offset.level_rad", 0.0)

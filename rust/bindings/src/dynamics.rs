@@ -26,6 +26,18 @@ pub fn steering_parameters() -> Vec<&'static str> {
     NAMES.to_vec()
 }
 
+/// The highest circular frequency of every row of `parameters`, rad/s, the column wound up by so much.
+#[pyfunction]
+pub fn steering_highest_rad_s<'py>(
+    py: Python<'py>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    wound_rad: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let highest = |body: &OneMass<f64>| body.highest_frequency_rad_s(wound_rad);
+    let made: Vec<f64> = bodies(&parameters)?.iter().map(highest).collect();
+    Ok(made.into_pyarray(py))
+}
+
 /// `parameters` (lanes, names), `starts` (lanes, 2), `phi` and `speed` (lanes, samples), written.
 #[pyfunction]
 #[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, width, phi, speed))]

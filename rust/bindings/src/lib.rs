@@ -24,8 +24,8 @@ mod _core {
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
     use crate::dynamics::{
-        simulate_steering, steering_parameters, steering_summary_names, summarise_steering,
-        trace_steering,
+        simulate_steering, steering_highest_rad_s, steering_parameters, steering_summary_names,
+        summarise_steering, trace_steering,
     };
     #[pymodule_export]
     use crate::effects::effect_cards;

@@ -12,7 +12,7 @@ from ..._arrays import vector
 from ...errors import MeasurementError
 from ...model import Card, Model
 from ..parameters import Parameters
-from ..plant import Plant
+from ..plant import Motion, Plant
 from ..record import Record
 from ..smoothing import smoothed
 from . import body
@@ -147,16 +147,17 @@ class CarPlant(Plant):
         level = found.get("coulomb.level_nm", 0.0)
         return dict.fromkeys(OF_THE_LEVEL, level) if effect in ("stiction", "stribeck") and level > 0.0 else {}
 
-    def candidates(self, model: Model) -> tuple[Card, ...]:
+    def candidates(self, model: Model, records: Sequence[Record]) -> tuple[Card, ...]:
         """See :meth:`Plant.candidates`."""
-        return tuple(c for c in super().candidates(model) if c.name != "roll_steer" or body.rolls(model))
+        return tuple(c for c in super().candidates(model, records) if c.name != "roll_steer" or body.rolls(model))
 
-    def same_as(self, card: Card, found: Mapping[str, float], top_speed: float) -> str | None:
+    def same_as(self, card: Card, solved: Mapping[str, float], moved: Motion) -> str | None:
         """See :meth:`Plant.same_as`."""
-        slow = card.name == "stribeck" and found["stribeck.speed_rad_s"] < SLOW_SHARE * top_speed
+        slow = card.name == "stribeck" and solved["stribeck.speed_rad_s"] < SLOW_SHARE * _top_speed(moved)
         return card.becomes if slow else None
 
-    def top_speed(self, model: Model, predicted: Sequence[np.ndarray], records: Sequence[Record]) -> float:
-        """Return the top speed of the road wheels, from the handwheel: no channel need show it."""
-        rates = [np.abs(np.gradient(r.drives["handwheel"], 1.0 / r.rate_hz)).max() for r in records]
-        return float(max(rates)) / model.known["steering.ratio"]
+
+def _top_speed(moved: Motion) -> float:
+    """Return the top speed of the road wheels, from the handwheel: no channel need show it."""
+    rates = [np.abs(np.gradient(r.drives["handwheel"], 1.0 / r.rate_hz)).max() for r in moved.records]
+    return float(max(rates)) / moved.model.known["steering.ratio"]

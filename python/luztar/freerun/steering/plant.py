@@ -12,9 +12,10 @@ from ..._arrays import vector
 from ...errors import ModelError
 from ...model import Card, Model
 from ..parameters import Parameters
-from ..plant import Plant
+from ..plant import Motion, Plant
 from ..record import Record
 from ..smoothing import smoothed
+from .contact import are_apart, require_one_contact
 from .predict import predict
 from .sizes import sizes_of
 
@@ -27,6 +28,14 @@ START_FIT_S = 0.05
 START_ERRORS = 3.0
 # A Stribeck speed below this share of the road wheel's top speed is felt at rest only: it is stiction.
 SLOW_SHARE = 0.03
+# Over less than a turn of the handwheel a wave per turn and a spring are the same curve.
+WHOLE_TURN_RAD = 2.0 * np.pi
+# Static friction that has grown after this share of a usual rest does not show its growth: it is stiction.
+SHORT_SHARE = 0.2
+# What is no amount of an effect: it stands at its size until it is searched.
+WHOLE = ("stribeck.speed_rad_s", "dwell.time_s", "end_stop.limit_rad", "presliding.breakaway_rad", "cogging.per_turn")
+# Where an effect does next to nothing, as a share of the size.
+NOTHING: Mapping[str, float] = {"presliding.breakaway_rad": 0.05}
 # One of them must be known: angles alone do not show the scale of the torques.
 SCALE_SETTERS = ("steering.inertia_kg_m2", "steering.stiffness_nm_per_rad", "steering.aligning_nm_per_rad")
 # The level found so far stands between kinetic and static friction: a share of it is what these search.
@@ -52,6 +61,13 @@ class SteeringPlant(Plant):
         "drag": {"drag.coefficient_nm_s2_per_rad2": (0.1, 0.6)},
         "asymmetric_coulomb": {"asymmetric_coulomb.difference_nm": (-0.3, 0.3)},
         "asymmetric_viscous": {"asymmetric_viscous.difference_nm_s_per_rad": (-0.3, 0.3)},
+        "end_stop": {"end_stop.stiffness_nm_per_rad": (0.1, 1.0), "end_stop.limit_rad": (0.7, 0.85, 0.95)},
+        "once_per_rev": {
+            "once_per_rev.amplitude_nm": (0.3,),
+            "once_per_rev.phase_rad": (-0.5 * math.pi, 0.0, 0.5 * math.pi, 0.95 * math.pi),
+        },
+        "presliding": {"presliding.breakaway_rad": (0.2, 1.0, 4.0), "presliding.shape": (0.0, 1.0)},
+        "dwell": {"dwell.extra_nm": (0.3, 1.0), "dwell.time_s": (0.3, 1.0, 4.0)},
         "delay": {"delay.time_s": (0.1, 1.0, 4.0)},
         "offset": {"offset.level_rad": (0.0,)},
     }
@@ -65,11 +81,20 @@ class SteeringPlant(Plant):
         "steering.inertia_kg_m2": 0.02,
         "steering.stiffness_nm_per_rad": 1e-3,
         "stribeck.speed_rad_s": 1e-3,
+        "dwell.time_s": 1e-2,
+        "presliding.breakaway_rad": 0.02,
     }
     # Static friction below the kinetic one never holds a body.
     one_sided = frozenset(
-        {"coulomb.level_nm", "viscous.coefficient_nm_s_per_rad", "stiction.extra_nm", "freeplay.gap_rad"}
+        {
+            "coulomb.level_nm",
+            "viscous.coefficient_nm_s_per_rad",
+            "stiction.extra_nm",
+            "dwell.extra_nm",
+            "freeplay.gap_rad",
+        }
     )
+    choices = frozenset({"presliding.shape"})
     pairs: Mapping[frozenset[str], str] = {
         frozenset({"stiction", "stribeck"}): "Turn the handwheel very slowly and at three even speeds: stiction shows "
         "at starts only, Stribeck friction also while creeping.",
@@ -82,7 +107,8 @@ class SteeringPlant(Plant):
     }
 
     def require(self, model: Model) -> None:
-        """See :meth:`Plant.require`: the ratio and one torque."""
+        """See :meth:`Plant.require`: the ratio and one torque, and one kind of contact."""
+        require_one_contact(model)
         if "steering.ratio" not in model.known:
             remedy = "Give steering.ratio: angles alone do not determine it."
             raise ModelError("the ratio is not given", "known", remedy)
@@ -118,6 +144,16 @@ class SteeringPlant(Plant):
         """See :meth:`Plant.predict`."""
         return [phi[:, :, None] for phi in predict(parameters, records, values)]
 
+    def whole(self, key: str) -> bool:
+        """See :meth:`Plant.whole`."""
+        return key.startswith(("steering.", "viscous.")) or key in WHOLE
+
+    def nothing(self, key: str, size: float) -> float | None:
+        """See :meth:`Plant.nothing`."""
+        if key in NOTHING:
+            return NOTHING[key] * size
+        return None if key in WHOLE else super().nothing(key, size)
+
     def sizes_for(self, effect: str, found: Mapping[str, float]) -> Mapping[str, float]:
         """See :meth:`Plant.sizes_for`."""
         level = found.get("coulomb.level_nm", 0.0)
@@ -128,10 +164,39 @@ class SteeringPlant(Plant):
             return {"asymmetric_viscous.difference_nm_s_per_rad": viscous}
         return {}
 
-    def same_as(self, card: Card, found: Mapping[str, float], top_speed: float) -> str | None:
+    def candidates(self, model: Model, records: Sequence[Record]) -> tuple[Card, ...]:
+        """See :meth:`Plant.candidates`."""
+        turned = max(float(np.ptp(r.outputs[0].motion)) for r in records)
+        return tuple(
+            c
+            for c in super().candidates(model, records)
+            if (turned >= WHOLE_TURN_RAD or not c.per_turn) and not are_apart((*model.effects, c.name))
+        )
+
+    def same_as(self, card: Card, solved: Mapping[str, float], moved: Motion) -> str | None:
         """See :meth:`Plant.same_as`."""
         if card.name == "asymmetric_coulomb":
             return card.becomes
-        if card.name == "stribeck" and found["stribeck.speed_rad_s"] < SLOW_SHARE * top_speed:
+        if card.name == "stribeck" and solved["stribeck.speed_rad_s"] < SLOW_SHARE * _top_speed(moved):
             return card.becomes
+        if card.name == "dwell":
+            rest = typical_rest_s(moved)
+            if rest is None or solved["dwell.time_s"] < SHORT_SHARE * rest:
+                return "stiction"
         return None
+
+
+def _top_speed(moved: Motion) -> float:
+    of = zip(moved.simulated, moved.records, strict=True)
+    return max(float(np.abs(np.gradient(p[:, 0], 1.0 / r.rate_hz)).max()) for p, r in of)
+
+
+def typical_rest_s(moved: Motion) -> float | None:
+    """Return the median time for which the modelled road wheel stands, None where it never does."""
+    rests: list[float] = []
+    for simulated, record in zip(moved.simulated, moved.records, strict=True):
+        # At rest the model's angle is the same to the last bit.
+        still = np.diff(simulated[:, 0]) == 0.0
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], still, [0])).astype(int)))
+        rests.extend((edges[1::2] - edges[::2]) / record.rate_hz)
+    return float(np.median(rests)) if rests else None

@@ -12,9 +12,9 @@ use crate::Error;
 use crate::effects::Lane;
 
 use super::drive::Drive;
-use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
+use super::march::{Advance, Lanes, State, WithKernel, choose};
 use super::number::Pure;
-use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::one_mass::OneMass;
 use super::tile::Tile;
 
 /// How a step is made.
@@ -144,9 +144,7 @@ fn blocks(
     let effects = batch
         .bodies
         .iter()
-        .map(OneMass::effects)
-        .max()
-        .unwrap_or(PLAIN);
+        .fold(0, |bits, body| bits | body.effects());
     let samples = drive.samples();
     let places = cut(phi, block * samples, count)
         .into_iter()
@@ -269,19 +267,16 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.effects) {
-            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
-            (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
-            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
-            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
-            (Kernel::Split, _) => self.along::<Elastic>(),
-        }
+        let (kernel, effects) = (self.0.kernel, self.0.effects);
+        choose(kernel, effects, self);
     }
 }
 
-impl<const N: usize> Task<'_, N> {
+impl<const N: usize> WithKernel for Task<'_, N> {
+    type Output = ();
+
     #[inline(always)]
-    fn along<A: Advance>(self) {
+    fn with<A: Advance>(self) {
         let part = self.0;
         let samples = part.drive.samples();
         let lanes = Lanes::<N>::new(part.bodies, Pure(part.drive.step_s()));

@@ -6,9 +6,9 @@ use super::drive::{Drive, Span};
 use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lanes::{Batch, Kernel, Start, Width, check};
 use super::ledger::Ledger;
-use super::march::{Advance, Elastic, MoreauJean, Split};
+use super::march::{Advance, WithKernel, choose};
 use super::number::Pure;
-use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::one_mass::OneMass;
 use super::split::{Carried, Pace, Step};
 
 /// What [`trace`] returns.
@@ -27,6 +27,17 @@ pub struct Trace {
 /// One sub-step of one body.
 type Stepper = fn(&OneMass<Pure>, &Span, Pace, (Pure, Pure), Carried) -> Step;
 
+/// The sub-step of one body by a kernel.
+struct OneStep;
+
+impl WithKernel for OneStep {
+    type Output = Stepper;
+
+    fn with<A: Advance>(self) -> Stepper {
+        A::step
+    }
+}
+
 /// Runs one body along a drive, with the same bits as a lane of [`super::simulate`].
 ///
 /// # Errors
@@ -44,13 +55,7 @@ pub fn trace(
         width: Width::Baseline,
     };
     check(batch, drive)?;
-    let step: Stepper = match (kernel, body.effects()) {
-        (Kernel::MoreauJean, _) => MoreauJean::step,
-        (Kernel::Split, PLAIN) => Split::<PLAIN>::step,
-        (Kernel::Split, CURVED) => Split::<CURVED>::step,
-        (Kernel::Split, EVERY) => Split::<EVERY>::step,
-        (Kernel::Split, _) => Elastic::step,
-    };
+    let step = choose(kernel, body.effects(), OneStep);
     let body = body.pure();
     let mut carried = Carried::NONE;
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
