@@ -16,7 +16,7 @@ from .car import CAR_COLUMNS, CHANNELS, START_COLUMNS, SUMMARY_COLUMNS, Car, che
 from .corridor import Corridor
 from .signals import Pieces, Samples, signal
 
-MODELS = ("single_track", "lateral_roll")
+MODELS = ("single_track", "lateral_roll", "twelve")
 STEERS = ("angle", "torque")
 
 

@@ -48,7 +48,7 @@ def simulate(
         Too long a step is refused with the part of the car that does not allow it.
     every : int
         Steps from one sample of the trace to the next.
-    model : {"single_track", "lateral_roll"}
+    model : {"single_track", "lateral_roll", "twelve"}
     tyre : {"linear", "brush", "magic_formula"}, optional
         The car's own where not given.
     vary : mapping of str to float or array_like, shape (cars,)
