@@ -140,6 +140,11 @@ impl Task<'_> {
         let mut rate = [0.0; N];
         hand.values(0.0, slack, &mut hand0);
         speed.values(0.0, slack, &mut speed0);
+        let steady = fleet.speed.is_constant();
+        if steady {
+            (speed1, speed2) = (speed0, speed0);
+        }
+        let (mut inv0, mut inv1) = (speed0.map(|u| 1.0 / u), speed1.map(|u| 1.0 / u));
         let mut seen = Views::new();
         let mut next = now.clone();
         for number in 0..=steps {
@@ -150,8 +155,14 @@ impl Task<'_> {
                 hand.rates(middle, &mut rate);
             }
             hand.values(end, -slack, &mut hand2);
-            speed.values(middle, slack, &mut speed1);
-            speed.values(end, -slack, &mut speed2);
+            if !steady {
+                speed.values(middle, slack, &mut speed1);
+                speed.values(end, -slack, &mut speed2);
+                for lane in 0..N {
+                    inv0[lane] = 1.0 / speed0[lane];
+                    inv1[lane] = 1.0 / speed1[lane];
+                }
+            }
             for lane in 0..N {
                 let car = Prepared::gather(&table, lane);
                 let input = Input {
@@ -161,9 +172,9 @@ impl Task<'_> {
                         end: Pure(hand2[lane]),
                     },
                     speed: Pure(speed0[lane]),
-                    inv_speed: Pure(1.0 / speed0[lane]),
+                    inv_speed: Pure(inv0[lane]),
                     speed_middle: Pure(speed1[lane]),
-                    inv_speed_middle: Pure(1.0 / speed1[lane]),
+                    inv_speed_middle: Pure(inv1[lane]),
                     push: Pure((speed2[lane] - speed0[lane]) * inv_h),
                 };
                 let state = now.get(lane);
