@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import t
 
 import luztar
-from generators.car import NOISE, CarTruth, car_run, drive
+from generators.hidden_car import NOISE, CarTruth, car_run, drive
 from generators.steering import Hand
 from luztar.errors import MeasurementError, ModelError
 

@@ -1,249 +1,235 @@
-"""Car runs from a general solver: steering, tyres and body as a machine of modes, each by DOP853 between events.
+"""Cars written down a second time: matrices, numpy's functions and a general solver; nothing of luztar.
 
-Shares no code with luztar: the front wheels turn to the left, to the right, or stand; an event function ends each mode.
-The handwheel is a sum of sines, known in closed form. Axes of ISO 8855: y and yaw to the left, roll to the right.
+Axes of ISO 8855. The steering has no friction and no freeplay here, so that every equation is smooth.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .steering import Hand
-
 GRAVITY = 9.80665
-# Wheels at rest are looked at this often: a hand of 1 Hz winds no spring up and lets it go again in between.
-SCANS_PER_S = 400
-# A tenth of the smallest noise that is added to a run, over the largest of the states.
-RUN_TOLERANCE = 1e-6
+# Far below what a run of luztar at 1 ms leaves.
+TOLERANCE = 1e-10
+
+Parameters = Mapping[str, float]
 
 
-@dataclass(frozen=True)
-class CarTruth:
-    """A car as a workshop would note it."""
+def static_loads(p: Parameters) -> tuple[float, float]:
+    """Return the loads of front and rear axle, N."""
+    base = p["body.front_axle_m"] + p["body.rear_axle_m"]
+    weight = p["body.mass_kg"] * GRAVITY
+    return weight * p["body.rear_axle_m"] / base, weight * p["body.front_axle_m"] / base
 
-    mass: float = 1350.0
-    yaw_inertia: float = 2200.0
-    front_axle: float = 1.15
-    rear_axle: float = 1.45
-    front_cornering: float = 105e3
-    rear_cornering: float = 118e3
-    pneumatic_trail: float = 0.035
-    caster_trail: float = 0.025
-    sprung_mass: float = 1200.0
-    roll_arm: float = 0.5
-    roll_inertia: float = 750.0
-    front_roll_stiffness: float = 32e3
-    rear_roll_stiffness: float = 24e3
-    front_roll_damping: float = 1900.0
-    rear_roll_damping: float = 1700.0
-    ratio: float = 16.0
-    stiffness: float = 45.0
-    inertia: float = 3.0
-    viscous: float = 90.0
-    half_gap: float = 0.0
-    kinetic: float = 0.0
-    static: float = 0.0
-    adhesion: float = math.inf
-    relaxation: float = 0.0
-    front_roll_steer: float = 0.0
-    rear_roll_steer: float = 0.0
 
-    def known(self) -> dict[str, float]:
-        """What a scale, a tape and a torque wrench show: everything that is no tyre, friction or yaw inertia."""
-        return {
-            "body.mass_kg": self.mass,
-            "body.front_axle_m": self.front_axle,
-            "body.rear_axle_m": self.rear_axle,
-            "body.sprung_mass_kg": self.sprung_mass,
-            "body.roll_arm_m": self.roll_arm,
-            "body.roll_inertia_kg_m2": self.roll_inertia,
-            "front.pneumatic_trail_m": self.pneumatic_trail,
-            "front.caster_trail_m": self.caster_trail,
-            "front.track_m": 1.5,
-            "front.roll_stiffness_nm_per_rad": self.front_roll_stiffness,
-            "front.roll_damping_nm_s_per_rad": self.front_roll_damping,
-            "rear.track_m": 1.5,
-            "rear.roll_stiffness_nm_per_rad": self.rear_roll_stiffness,
-            "rear.roll_damping_nm_s_per_rad": self.rear_roll_damping,
-            "steering.inertia_kg_m2": self.inertia,
-            "steering.ratio": self.ratio,
-            "steering.stiffness_nm_per_rad": self.stiffness,
-        }
+def wheel(p: Parameters, axle: str, tyre: str, tan_slip: float, load: float) -> tuple[float, float]:
+    """Return lateral force and aligning moment of one wheel at a load, N and Nm."""
+    static = 0.5 * static_loads(p)[0 if axle == "front" else 1]
+    n = load / static
+    ratio = p.get(f"{axle}.load_ratio", 0.0)
+    # Pacejka's load dependence as he writes it, with the angle.
+    peak = np.sin(2.0 * np.arctan(ratio)) if ratio else 1.0
+    grown = np.sin(2.0 * np.arctan(ratio * n)) / peak if ratio else n
+    stiffness = 0.5 * p[f"{axle}.cornering_n_per_rad"] * grown
+    trail = p.get(f"{axle}.pneumatic_trail_m", 0.0)
+    if tyre == "linear":
+        force = -stiffness * tan_slip
+        return force, force * trail
+    mu = p[f"{axle}.friction"] * (1.0 - p.get(f"{axle}.friction_load", 0.0) * (n - 1.0))
+    if load <= 0.0 or mu <= 0.0:
+        return 0.0, 0.0
+    critical = 3.0 * mu * load / stiffness
+    theta = min(abs(tan_slip) / critical, 1.0)
+    # Fiala: sliding from the trailing edge; moment from the parabola of pressure over the half length 3 t0.
+    fiala = mu * load * (1.0 - (1.0 - theta) ** 3)
+    moment = mu * load * 3.0 * trail * theta * (1.0 - theta) ** 3
+    if tyre == "brush":
+        return -np.sign(tan_slip) * fiala, -np.sign(tan_slip) * moment
+    c, e = p[f"{axle}.shape"], p.get(f"{axle}.curvature", 0.0)
+    b = stiffness / (c * mu * load)
+    inner = b * tan_slip - e * (b * tan_slip - np.arctan(b * tan_slip))
+    force = -mu * load * np.sin(c * np.arctan(inner))
+    lever = moment / fiala if fiala > 0.0 else trail
+    return force, force * lever
 
-    # --- tyres ---
 
-    def slip(self, sideways: float, angle: float) -> float:
-        """Slip of a wheel: small angles for the linear tyre, the tangent of the slip angle for one that slides."""
-        if math.isinf(self.adhesion):
-            return sideways - angle
-        return math.tan(math.atan(sideways) - angle)
+def tan_slip(speed: float, side: float, steer: float, tyre: str) -> float:
+    """Return the tangent of the slip angle from the velocity in the wheel's own frame."""
+    if tyre == "linear":
+        return side / speed - steer
+    across = side * np.cos(steer) - speed * np.sin(steer)
+    ahead = speed * np.cos(steer) + side * np.sin(steer)
+    return across / ahead
 
-    def wheel(self, stiffness: float, load: float, slip: float) -> tuple[float, float]:
-        """Lateral force and the share of the pneumatic trail that is left, of one wheel."""
-        if math.isinf(self.adhesion):
-            return -stiffness * slip, 1.0
-        limit = self.adhesion * load
-        share = min(stiffness * abs(slip) / (3.0 * limit), 1.0)
-        shape = 1.0 - share + share**2 / 3.0
-        force = -math.copysign(3.0 * limit * share * shape, slip)
-        return force, (1.0 - share) ** 3 / shape
 
-    def axle(self, stiffness: float, load: float, slip: float, moved: float) -> tuple[float, float]:
-        """Force of an axle and its torque per metre of pneumatic trail, ``moved`` newtons of load to the right."""
-        force = turn = 0.0
-        for side in (-1.0, 1.0):
-            each = max(0.5 * load + side * moved, 1e-9)
-            f, trail = self.wheel(stiffness * each / load, each, slip)
-            force, turn = force + f, turn + f * trail
-        return force, turn
+class Plant:
+    """Equations of a car of one of the three models behind its steering, in matrix form."""
 
-    # --- motion ---
+    def __init__(self, p: Parameters, model: str, tyre: str) -> None:
+        self.p = {"rear.steer_ratio": 0.0, **p}
+        self.model, self.tyre = model, tyre
+        p = self.p
+        # Wheels: axle, x, y (m). The single-track model has one wheel pair per axle in its middle.
+        a, b = p["body.front_axle_m"], p["body.rear_axle_m"]
+        half = {axle: 0.5 * p.get(f"{axle}.track_m", 0.0) for axle in ("front", "rear")}
+        self.wheels = [
+            ("front", a, half["front"]),
+            ("front", a, -half["front"]),
+            ("rear", -b, half["rear"]),
+            ("rear", -b, -half["rear"]),
+        ]
+        if model != "single_track":
+            self.arm = p["body.sprung_mass_kg"] * p["body.roll_arm_m"]
+            m, ix = p["body.mass_kg"], p["body.roll_inertia_kg_m2"]
+            self.lateral_mass = np.array([[m, -self.arm], [-self.arm, ix]])
 
-    def moves(self, u: float, phi: float, y: np.ndarray) -> tuple[list[float], float, float]:
-        """Rates of (v, r, lag front, lag rear, roll, roll rate), torque on the king-pins, lateral acceleration."""
-        v, r, lag_front, lag_rear, roll, roll_rate = y
-        base = self.front_axle + self.rear_axle
-        front_angle, rear_angle = phi + self.front_roll_steer * roll, self.rear_roll_steer * roll
-        front_slip = self.slip((v + self.front_axle * r) / u, front_angle)
-        rear_slip = self.slip((v - self.rear_axle * r) / u, rear_angle)
-        front_lag = rear_lag = 0.0
-        if self.relaxation > 0.0:
-            front_lag, rear_lag = (
-                u / self.relaxation * (front_slip - lag_front),
-                u / self.relaxation * (rear_slip - lag_rear),
-            )
-            front_slip, rear_slip = lag_front, lag_rear
-        front_load, rear_load = (self.mass * GRAVITY * x / base for x in (self.rear_axle, self.front_axle))
-        front_moved = (self.front_roll_stiffness * roll + self.front_roll_damping * roll_rate) / 1.5
-        rear_moved = (self.rear_roll_stiffness * roll + self.rear_roll_damping * roll_rate) / 1.5
-        front, turn = self.axle(self.front_cornering, front_load, front_slip, front_moved)
-        rear, _ = self.axle(self.rear_cornering, rear_load, rear_slip, rear_moved)
-        sideways = [front, rear]
-        if not math.isinf(self.adhesion):
-            sideways = [front * math.cos(front_angle), rear * math.cos(rear_angle)]
-        arm = self.sprung_mass * self.roll_arm
-        stiffness = self.front_roll_stiffness + self.rear_roll_stiffness - arm * GRAVITY
-        restoring = -stiffness * roll - (self.front_roll_damping + self.rear_roll_damping) * roll_rate
-        side, lean = np.linalg.solve(
-            [[self.mass, -arm], [-arm, self.roll_inertia]], [sideways[0] + sideways[1], restoring]
+    # State: v, r, lag of 4 wheels, roll, roll rate, phi, phi rate, x, y, yaw, then (12) heave, pitch, 4 hubs and rates.
+    SIZE = 13
+
+    def start(self) -> np.ndarray:
+        return np.zeros(self.SIZE + (12 if self.model == "twelve" else 0))
+
+    def loads(self, s: np.ndarray, u: float) -> np.ndarray:
+        p = self.p
+        static = np.repeat(0.5 * np.array(static_loads(p)), 2)
+        if self.model == "single_track":
+            return static
+        if self.model == "twelve":
+            stiffness = np.repeat([p[f"{x}.tyre_stiffness_n_per_m"] for x in ("front", "rear")], 2)
+            return np.maximum(static - stiffness * s[15:19], 0.0)
+        moved = []
+        for axle, load in zip(("front", "rear"), static_loads(p), strict=True):
+            torque = p[f"{axle}.roll_stiffness_nm_per_rad"] * s[6] + p[f"{axle}.roll_damping_nm_s_per_rad"] * s[7]
+            torque += p.get(f"{axle}.roll_centre_m", 0.0) * load / GRAVITY * u * s[1]
+            moved.append(torque / p[f"{axle}.track_m"])
+        return static + np.array([-moved[0], moved[0], -moved[1], moved[1]])
+
+    def rates(self, s: np.ndarray, psi: float, u: float) -> tuple[np.ndarray, float, float]:
+        """Return the rates of the state, the lateral acceleration and the tyres' torque on the king-pins."""
+        p, model = self.p, self.model
+        v, r, lag, roll, roll_rate, phi, phi_rate, yaw = s[0], s[1], s[2:6], s[6], s[7], s[8], s[9], s[12]
+        out = np.zeros_like(s)
+        loads = self.loads(s, u)
+        forces, pins = np.zeros((4, 2)), 0.0
+        for i, (axle, x, y) in enumerate(self.wheels):
+            steer = phi if axle == "front" else p["rear.steer_ratio"] * phi
+            if model != "single_track":
+                steer += p.get(f"{axle}.roll_steer", 0.0) * roll
+            own = u if self.tyre == "linear" or model != "twelve" else u - r * y
+            slip = tan_slip(own, v + x * r, steer, self.tyre)
+            length = p.get(f"{axle}.relaxation_m", 0.0)
+            used = lag[i] if length > 0.0 else slip
+            out[2 + i] = u / length * (slip - lag[i]) if length > 0.0 else 0.0
+            force, moment = wheel(p, axle, self.tyre, used, loads[i])
+            small = self.tyre == "linear"
+            forces[i] = (0.0 if small else -force * np.sin(steer), force if small else force * np.cos(steer))
+            if axle == "front":
+                pins -= moment + p.get("front.caster_trail_m", 0.0) * force
+        side = forces[:, 1].sum()
+        lever_x, lever_y = (np.array([w[k] for w in self.wheels]) for k in (1, 2))
+        turn = lever_x @ forces[:, 1]
+        if model == "twelve":
+            turn -= lever_y @ forces[:, 0]
+        if model == "single_track":
+            acceleration = side / p["body.mass_kg"]
+        elif model == "lateral_roll":
+            k = sum(p[f"{x}.roll_stiffness_nm_per_rad"] for x in ("front", "rear")) - self.arm * GRAVITY
+            c = sum(p[f"{x}.roll_damping_nm_s_per_rad"] for x in ("front", "rear"))
+            acceleration, out[7] = np.linalg.solve(self.lateral_mass, [side, -k * roll - c * roll_rate])
+            out[6] = roll_rate
+        else:
+            acceleration = self._bounce(s, out, side, loads, -r * v)
+        out[0] = acceleration - u * r
+        out[1] = turn / p["body.yaw_inertia_kg_m2"]
+        column = p["steering.stiffness_nm_per_rad"] * (psi - p["steering.ratio"] * phi)
+        torque = p["steering.ratio"] * column + pins - p.get("steering.aligning_nm_per_rad", 0.0) * phi
+        torque += (
+            p.get("assist.gain", 0.0) * np.sign(column) * max(abs(column) - p.get("assist.threshold_nm", 0.0), 0.0)
         )
-        yaw = (self.front_axle * sideways[0] - self.rear_axle * sideways[1]) / self.yaw_inertia
-        torque = -(self.pneumatic_trail * turn + self.caster_trail * front)
-        return [side - u * r, yaw, front_lag, rear_lag, roll_rate, lean], torque, side
+        torque -= p.get("viscous.coefficient_nm_s_per_rad", 0.0) * phi_rate
+        out[8], out[9] = phi_rate, torque / p["steering.inertia_kg_m2"]
+        out[10] = u * np.cos(yaw) - v * np.sin(yaw)
+        out[11] = u * np.sin(yaw) + v * np.cos(yaw)
+        out[12] = r
+        return out, acceleration, pins
 
-    def column(self, psi: float, phi: float) -> float:
-        """Torque of the column on the king-pins."""
-        z = psi - self.ratio * phi
-        return self.ratio * self.stiffness * (z - min(max(z, -self.half_gap), self.half_gap))
+    def _bounce(self, s: np.ndarray, out: np.ndarray, side: float, loads: np.ndarray, forward: float) -> float:
+        """Heave, pitch, roll and hubs: q = (heave, pitch, roll, 4 hubs), springs through one matrix of reaches."""
+        p = self.p
+        q = np.concatenate((s[[13, 14, 6]], s[15:19]))
+        rate = np.concatenate((s[[19, 20, 7]], s[21:25]))
+        x, y = (np.array([w[k] for w in self.wheels]) for k in (1, 2))
+        reach = np.column_stack((np.ones(4), -x, y, -np.eye(4)))
+        each = [w[0] for w in self.wheels]
+        track = np.array([p[f"{a}.track_m"] for a in each])
+        spring = np.array([p[f"{a}.spring_n_per_m"] for a in each])
+        damper = np.array([2.0 * p[f"{a}.roll_damping_nm_s_per_rad"] for a in each]) / track**2
+        force = -reach.T @ (spring * (reach @ q) + damper * (reach @ rate))
+        for axle, (left, right) in (("front", (0, 1)), ("rear", (2, 3))):
+            t = p[f"{axle}.track_m"]
+            twist = np.zeros(7)
+            twist[2], twist[3 + left], twist[3 + right] = 1.0, -1.0 / t, 1.0 / t
+            bar = p[f"{axle}.roll_stiffness_nm_per_rad"] - 0.5 * p[f"{axle}.spring_n_per_m"] * t * t
+            force -= bar * (twist @ q) * twist
+        force[2] += self.arm * GRAVITY * q[2]
+        static = np.repeat(0.5 * np.array(static_loads(p)), 2)
+        force[3:] += loads - static
+        acceleration, out[7] = np.linalg.solve(self.lateral_mass, [side, force[2]])
+        sprung = p["body.sprung_mass_kg"]
+        out[19] = force[0] / sprung
+        out[20] = (force[1] - sprung * p["body.cg_height_m"] * forward) / p["body.pitch_inertia_kg_m2"]
+        for i, (axle, _, _) in enumerate(self.wheels):
+            load = static_loads(p)[0 if axle == "front" else 1]
+            unsprung = p[f"{axle}.unsprung_kg"]
+            moved = (load / GRAVITY - unsprung) * p.get(f"{axle}.roll_centre_m", 0.0)
+            moved += unsprung * p["body.wheel_radius_m"]
+            way = 1.0 if self.wheels[i][2] > 0.0 else -1.0
+            out[21 + i] = (force[3 + i] + way * moved * acceleration / track[i]) / (0.5 * unsprung)
+        out[13:15], out[15:19], out[6] = s[19:21], s[21:25], s[7]
+        return float(acceleration)
 
 
 def drive(
-    car: CarTruth, hand: Hand, speed: float, times: np.ndarray, *, tolerance: float = 1e-9
+    p: Parameters, model: str, tyre: str, psi: Callable[[float], float], u: float, times: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return what a car does, from straight driving, at some instants."""
-    dry = car.kinetic > 0.0 or car.static > 0.0
-    # A little above the kinetic level, so that what breaks away is pulled on and does not stand again by rounding.
-    held = max(car.static, car.kinetic) * (1.0 + 1e-9)
-    states = np.zeros((times.size, 8))
-    end = float(times[-1])
-    t, y = float(times[0]), np.zeros(8)
-    side = 0 if dry else 1
-
-    def torque(x: float, y: np.ndarray) -> float:
-        _, aligning, _ = car.moves(speed, y[6], y[:6])
-        return car.column(float(hand(x)), y[6]) + aligning
-
-    while t < end:
-        if side == 0:
-            y[7] = 0.0
-
-        def rate(x: float, y: np.ndarray, side: int = side) -> list[float]:
-            body, aligning, _ = car.moves(speed, y[6], y[:6])
-            if side == 0:
-                return [*body, 0.0, 0.0]
-            friction = (side * car.kinetic if dry else 0.0) + car.viscous * y[7]
-            return [*body, y[7], (car.column(float(hand(x)), y[6]) + aligning - friction) / car.inertia]
-
-        def leaves(x: float, y: np.ndarray, side: int = side) -> float:
-            return held - abs(torque(x, y)) if side == 0 else side * y[7]
-
-        leaves.terminal, leaves.direction = dry, -1.0  # type: ignore[attr-defined]
-        begin = t
-        if side != 0 and dry:
-            # A first instant by hand, so that the event at the start is not taken for one.
-            first = min(1e-7, 0.5 * (end - t))
-            pull = rate(t, y)[7]
-            y = y.copy()
-            y[6] += y[7] * first + 0.5 * pull * first**2
-            y[7] += pull * first
-            begin = t + first
-            if side * y[7] <= 0.0:
-                side, t = 0, begin
-                continue
-        wanted = times[times > begin]
-        solved = solve_ivp(
-            rate,
-            (begin, end),
-            y,
-            method="DOP853",
-            rtol=tolerance,
-            atol=1e-3 * tolerance,
-            t_eval=wanted,
-            events=leaves,
-            max_step=4.0 / SCANS_PER_S,
-        )
-        if len(solved.t):
-            states[np.isin(times, solved.t)] = solved.y.T
-        if solved.status != 1:
-            break
-        t, y = float(solved.t_events[0][0]), solved.y_events[0][0].copy()
-        pull = torque(t, y)
-        if side == 0:
-            side = 1 if pull > 0.0 else -1
-        else:
-            y[7] = 0.0
-            side = 0 if abs(pull) <= held else (1 if pull > 0.0 else -1)
-    side_acceleration = np.array([car.moves(speed, s[6], s[:6])[2] for s in states])
+    """Return channels at the times, from a solver of order 8."""
+    plant = Plant(p, model, tyre)
+    solved = solve_ivp(
+        lambda t, s: plant.rates(s, psi(t), u)[0],
+        (float(times[0]), float(times[-1])),
+        plant.start(),
+        method="DOP853",
+        t_eval=times,
+        rtol=TOLERANCE,
+        atol=TOLERANCE,
+    )
+    s = solved.y
+    told = [plant.rates(s[:, i], psi(t), u) for i, t in enumerate(times)]
     return {
-        "handwheel": np.asarray(hand(times)),
-        "yaw_rate": states[:, 1],
-        "lateral_acceleration": side_acceleration,
-        "roll_angle": states[:, 4],
-        "roadwheel": states[:, 6],
+        "roadwheel_rad": s[8],
+        "yaw_rate_rad_s": s[1],
+        "lateral_speed_m_s": s[0],
+        "lateral_acceleration_m_s2": np.array([t[1] for t in told]),
+        "tyre_torque_nm": np.array([t[2] for t in told]),
+        "roll_rad": s[6],
+        "x_m": s[10],
+        "y_m": s[11],
+        "yaw_rad": s[12],
+        "load_front_left_n": np.array([plant.loads(s[:, i], u)[0] for i in range(len(times))]),
     }
 
 
-# White noise of the sensors: rad/s, m/s2, rad, rad.
-NOISE = {"yaw_rate": 1.5e-3, "lateral_acceleration": 0.03, "roll_angle": 4e-4, "roadwheel": 4e-4}
-
-
-def car_run(
-    car: CarTruth,
-    chance: np.random.Generator,
-    *,
-    speed: float = 22.0,
-    seconds: float = 12.0,
-    rate_hz: float = 100.0,
-    reach: float = 0.08,
-    channels: tuple[str, ...] = tuple(NOISE),
-) -> dict[str, np.ndarray]:
-    """Return time, handwheel, speed and what the car does, with noise, for a hand that weaves up to 1 Hz.
-
-    ``reach`` is the largest amplitude of one sine of the hand; several add up to some four of it.
-    """
-    times = np.arange(round(seconds * rate_hz)) / rate_hz
-    count = 7
-    hand = Hand(
-        tuple(chance.uniform(0.3 * reach, reach, count)),
-        tuple(chance.uniform(0.1, 1.0, count)),
-        tuple(chance.uniform(0.0, 2.0 * math.pi, count)),
+def linear_matrices(p: Parameters, u: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return A and B of the single-track model: states (v, r), input the angle of the front wheels."""
+    m, iz = p["body.mass_kg"], p["body.yaw_inertia_kg_m2"]
+    a, b = p["body.front_axle_m"], p["body.rear_axle_m"]
+    cf, cr = p["front.cornering_n_per_rad"], p["rear.cornering_n_per_rad"]
+    matrix = np.array(
+        [
+            [-(cf + cr) / (m * u), -u - (a * cf - b * cr) / (m * u)],
+            [-(a * cf - b * cr) / (iz * u), -(a * a * cf + b * b * cr) / (iz * u)],
+        ]
     )
-    made = drive(car, hand, speed, times, tolerance=RUN_TOLERANCE)
-    out = {"time": times, "handwheel": made["handwheel"], "speed": np.full(times.size, speed)}
-    for name in channels:
-        out[name] = made[name] + chance.normal(0.0, NOISE[name], times.size)
-    return out
+    return matrix, np.array([cf / m, a * cf / iz])
