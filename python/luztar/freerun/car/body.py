@@ -13,6 +13,12 @@ def rolls(model: Model) -> bool:
     return all(key in model.known or key in model.start for key in ROLL)
 
 
+def relaxes(model: Model) -> bool:
+    """Whether a relaxation length of an axle is there without an effect."""
+    there = {**model.known, **model.start}
+    return any(there.get(f"{axle}.relaxation_m", 0.0) > 0.0 for axle in ("front", "rear"))
+
+
 def keys(model: Model) -> tuple[str, ...]:
     """Return the parameters that a car model has: of the optional ones those that are known or started."""
     optional = {f"{name}.{key}" for name, (_, own) in OWN.items() for key, *_ in own}
@@ -38,6 +44,9 @@ def require(model: Model) -> None:
     lacking = [key for key in ROLL if key not in there]
     if "body.roll_inertia_kg_m2" in there and lacking:
         raise ModelError(f"{lacking[0]} is not given, and the body rolls", "known", "Give it, or no roll inertia.")
+    if "tyre_relaxation" in model.effects and relaxes(model):
+        remedy = "Take front.relaxation_m and rear.relaxation_m out, or the effect."
+        raise ModelError("'tyre_relaxation' stands beside a relaxation length that is given", "known", remedy)
     if "roll_steer" in model.effects and not rolls(model):
         remedy = f"Give {', '.join(ROLL)}."
         raise ModelError("'roll_steer' needs a body that rolls", "known", remedy)

@@ -149,7 +149,10 @@ class CarPlant(Plant):
 
     def candidates(self, model: Model, records: Sequence[Record]) -> tuple[Card, ...]:
         """See :meth:`Plant.candidates`."""
-        return tuple(c for c in super().candidates(model, records) if c.name != "roll_steer" or body.rolls(model))
+        without = set() if body.rolls(model) else {"roll_steer"}
+        if body.relaxes(model):
+            without.add("tyre_relaxation")
+        return tuple(c for c in super().candidates(model, records) if c.name not in without)
 
     def same_as(self, card: Card, solved: Mapping[str, float], moved: Motion) -> str | None:
         """See :meth:`Plant.same_as`."""

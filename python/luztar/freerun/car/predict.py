@@ -45,8 +45,11 @@ def columns_of(parameters: Parameters, values: np.ndarray) -> dict[str, np.ndarr
     """Return the columns of cars, one value per lane, for value sets of shape (lanes, free)."""
     out: dict[str, np.ndarray] = {}
     for key, given in parameters.by_key(values).items():
-        if key not in NOT_OF_THE_CAR:
-            out |= dict.fromkeys(OF_EFFECTS.get(key, (key,)), given)
+        if key in NOT_OF_THE_CAR:
+            continue
+        for column in OF_EFFECTS.get(key, (key,)):
+            # Roll steer that is missing adds to what is known; one relaxation length stands for both axles.
+            out[column] = out[column] + given if key.startswith("roll_steer.") and column in out else given
     if "stribeck.extra_nm" in out:
         out["stribeck.extra_nm"] = np.maximum(out["stribeck.extra_nm"], -out["coulomb.level_nm"])
     return out

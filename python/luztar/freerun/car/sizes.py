@@ -72,5 +72,7 @@ def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
             f"{axle}.roll_damping_nm_s_per_rad": 1.5 * mass,
             f"{axle}.roll_centre_m": 0.1,
             f"{axle}.load_ratio": 0.5,
+            f"{axle}.relaxation_m": 0.5,
+            f"{axle}.roll_steer": 0.05,
         }
     return sizes
