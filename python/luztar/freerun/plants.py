@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..model import Model
+from .axis import AxisPlant
 from .car import CarPlant
 from .plant import Plant
 from .steering import SteeringPlant
@@ -13,4 +14,4 @@ def plant_of(model: Model) -> Plant:
     return _PLANTS[model.structure_name]
 
 
-_PLANTS: dict[str, Plant] = {"car": CarPlant(), "steering": SteeringPlant()}
+_PLANTS: dict[str, Plant] = {"axis": AxisPlant(), "car": CarPlant(), "steering": SteeringPlant()}

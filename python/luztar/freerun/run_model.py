@@ -34,7 +34,7 @@ def parameters_given(model: Model) -> dict[str, float]:
         remedy = 'Give a model file with structure = "steering".'
         raise ModelError(f"'{model.structure_name}' is driven: it cannot be simulated", "structure", remedy)
     if model.structure_name != "steering":
-        remedy = "Run a car with luztar.vehicle.simulate."
+        remedy = "Give a steering model; a car is run with luztar.vehicle.simulate."
         raise ModelError(f"'{model.structure_name}' is not simulated here", "structure", remedy)
     given = {**model.start, **model.known}
     missing = [key for key in keys_of(model) if key not in given and key not in OPTIONAL]

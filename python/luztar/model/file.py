@@ -24,6 +24,10 @@ def _schema() -> Any:
         filter_already_applied: bool = False
         decimate: int | None = Field(default=None, ge=1)
 
+    class RunPart(BaseModel):
+        model_config = ConfigDict(extra="forbid", strict=True)
+        free: bool = False
+
     class ModelFile(BaseModel):
         model_config = ConfigDict(extra="forbid", allow_inf_nan=False, populate_by_name=True, strict=True)
         version: int = Field(alias="schema")
@@ -32,6 +36,7 @@ def _schema() -> Any:
         known: dict[str, float | dict[str, float]] = {}
         start: dict[str, float | dict[str, float]] = {}
         comparison: ComparisonPart = ComparisonPart()
+        run: RunPart = RunPart()
 
     return ModelFile
 
@@ -89,6 +94,7 @@ def load(path: str | os.PathLike[str]) -> Model:
             _flat(parts.known),
             _flat(parts.start),
             Comparison(**parts.comparison.model_dump()),
+            parts.run.free,
         )
     except ModelError as error:
         raise ModelError(error.kind, f"{shown}, {error.where}", error.remedy) from None
@@ -108,6 +114,8 @@ def save(model: Model, path: str | os.PathLike[str]) -> None:
         f'structure = "{model.structure_name}"',
         f"effects = [{quoted}]",
     ]
+    if model.free:
+        lines += ["", "[run]", "free = true"]
     for name, table in (("known", model.known), ("start", model.start)):
         if table:
             lines += ["", f"[{name}]", *(f"{key} = {value!r}" for key, value in table.items())]

@@ -75,6 +75,8 @@ class Model:
     start : mapping
         Start values of inner parameters, tried beside those of the search's own grid.
     comparison : Comparison
+    free : bool
+        Whether an axis runs freely, force in and position out, instead of being driven; a steering and a car always do.
     """
 
     structure_name: str
@@ -82,9 +84,10 @@ class Model:
     known: Mapping[str, float] = field(default_factory=dict)
     start: Mapping[str, float] = field(default_factory=dict)
     comparison: Comparison = Comparison()
+    free: bool = False
 
     def __post_init__(self) -> None:
-        structure(self.structure_name)
+        structure(self.structure_name, free=self.free)
         object.__setattr__(self, "effects", tuple(self.effects))
         for table in ("known", "start"):
             given = {self._whole_key(k): v for k, v in getattr(self, table).items()}
@@ -122,7 +125,10 @@ class Model:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view of a dict cannot be pickled.
-        return (Model, (self.structure_name, self.effects, dict(self.known), dict(self.start), self.comparison))
+        return (
+            Model,
+            (self.structure_name, self.effects, dict(self.known), dict(self.start), self.comparison, self.free),
+        )
 
     def _check(self, where: str, key: str, value: float) -> None:
         if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
@@ -155,10 +161,13 @@ class Model:
         return cls("rig", structure("rig").effects, comparison=Comparison(**comparison))
 
     @classmethod
-    def axis(cls, *, pitch_m: float | None = None, **comparison: Any) -> Model:
-        """Return the model of a driven axis: offset, Coulomb and viscous friction, inertia."""
+    def axis(cls, *, pitch_m: float | None = None, free: bool = False, **comparison: Any) -> Model:
+        """Return the model of an axis: offset, Coulomb and viscous friction, inertia.
+
+        Driven, position in and force out, or ``free``, force in and position out.
+        """
         known = {} if pitch_m is None else {"pitch_m": pitch_m}
-        return cls("axis", structure("axis").effects, known, comparison=Comparison(**comparison))
+        return cls("axis", structure("axis").effects, known, comparison=Comparison(**comparison), free=free)
 
     @classmethod
     def steering(cls, **known: float) -> Model:
@@ -215,7 +224,7 @@ class Model:
     @property
     def structure(self) -> Structure:
         """The structure with its channels."""
-        return structure(self.structure_name)
+        return structure(self.structure_name, free=self.free)
 
     @property
     def band_hz(self) -> float | None:
@@ -251,6 +260,7 @@ class Model:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the model as plain JSON values, in the layout of a model file."""
+        run = {"run": {"free": True}} if self.free else {}
         return {
             "schema": 1,
             "structure": self.structure_name,
@@ -262,4 +272,5 @@ class Model:
                 "filter_already_applied": self.comparison.filter_already_applied,
                 "decimate": self.comparison.decimate,
             },
+            **run,
         }

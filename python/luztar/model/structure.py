@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import ModelError
 
@@ -28,6 +28,10 @@ class Structure:
     outputs : tuple of str
         The channels that are explained, where there are several; they are then compared in multiples of their noise
         (unit sigma).
+    is_free : bool
+        Whether the model is run freely, motion out, instead of being asked for the effort of a given motion.
+    drive : str
+        The channel that goes in, where it is not the motion.
     """
 
     name: str
@@ -39,21 +43,24 @@ class Structure:
     band_hz: float | None
     unknown_travel_share: float
     outputs: tuple[str, ...] = ()
+    is_free: bool = False
+    drive: str = ""
+
+    @property
+    def driven_by(self) -> str:
+        """The channel that goes in."""
+        return self.drive or self.motion
 
     @property
     def channels(self) -> tuple[str, ...]:
         """The channels of a run that belong to the structure, whether recorded or not."""
-        return (self.motion, *(self.outputs or (self.effort,)))
+        drive = (self.drive,) if self.drive else ()
+        return (*drive, self.motion, *(self.outputs or (self.effort,)))
 
     @property
     def turns(self) -> bool:
         """Whether the motion is an angle."""
         return self.motion_unit == "rad"
-
-    @property
-    def is_free(self) -> bool:
-        """Whether the model is run freely, motion out, instead of being asked for the effort of a given motion."""
-        return self.name in ("steering", "car")
 
     def hysteresis(self, motion_range: float) -> float:
         """Return how far the motion must come back to count as a reversal, in its unit."""
@@ -72,7 +79,7 @@ class Structure:
 STRUCTURES = {
     "rig": Structure("rig", "angle", "torque", "rad", "Nm", ("offset", "coulomb", "viscous"), 6.0, 0.03),
     "axis": Structure("axis", "position", "force", "m", "N", ("offset", "coulomb", "viscous", "inertia"), 40.0, 0.001),
-    "steering": Structure("steering", "handwheel", "roadwheel", "rad", "rad", ("viscous",), None, 0.0),
+    "steering": Structure("steering", "handwheel", "roadwheel", "rad", "rad", ("viscous",), None, 0.0, is_free=True),
     "car": Structure(
         "car",
         "handwheel",
@@ -83,12 +90,25 @@ STRUCTURES = {
         None,
         0.0,
         ("yaw_rate", "lateral_acceleration", "roll_angle", "roadwheel", "speed"),
+        is_free=True,
     ),
 }
 
 
-def structure(name: str) -> Structure:
-    """Return a structure by name.
+# The same axis with the force in and the position out: strokes are those of the position.
+_FREE_AXIS = replace(
+    STRUCTURES["axis"],
+    effort="position",
+    effort_unit="m",
+    band_hz=None,
+    unknown_travel_share=0.0,
+    is_free=True,
+    drive="force",
+)
+
+
+def structure(name: str, *, free: bool = False) -> Structure:
+    """Return a structure by name; ``free`` asks for the axis that runs freely.
 
     Raises
     ------
@@ -97,4 +117,8 @@ def structure(name: str) -> Structure:
     """
     if name not in STRUCTURES:
         raise ModelError(f"there is no structure '{name}'", "structure", f"Known: {', '.join(STRUCTURES)}.")
+    if free and name == "axis":
+        return _FREE_AXIS
+    if free and not STRUCTURES[name].is_free:
+        raise ModelError(f"a {name} is driven", "run", "Leave free out: only an axis, a steering, a car run freely.")
     return STRUCTURES[name]

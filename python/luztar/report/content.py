@@ -227,7 +227,7 @@ def _settings(study: Study | None, check: Check | None) -> list[tuple[str, str]]
     if study is not None:
         model = study.model
         rows += [
-            ("Structure", f"{model.structure_name}: {model.structure.motion} in, {model.structure.effort} out"),
+            ("Structure", f"{model.structure_name}: {model.structure.driven_by} in, {model.structure.effort} out"),
             ("Model as given", ", ".join(study.steps[0].fit.model.effects) or "no effects"),
             ("Model after the last step", ", ".join(model.effects)),
             ("Given, not estimated", ", ".join(f"{k} = {number(v)}" for k, v in model.known.items()) or "nothing"),
