@@ -14,7 +14,7 @@ NEAR_NOISE = 1.05
 
 
 def generated(seed: int, *, runs: int = 3, seconds: float = 8.0, **friction) -> list[luztar.Run]:
-    """A mass of 20 kg: a steering mechanism whose hand is a force, as its spring to the ground takes the column's off."""
+    """A mass of 20 kg: a mechanism whose spring to the ground takes the column's off, so that its hand is a force."""
     chance = np.random.default_rng(seed)
     given = {"viscous": 60.0, "kinetic": 15.0, "static": 15.0, **friction}
     mass = Mechanism(inertia=20.0, ratio=1.0, stiffness=1.0, aligning=-1.0, **given)

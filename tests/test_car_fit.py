@@ -87,7 +87,7 @@ def test_nothing_is_named_where_nothing_is_hidden_and_the_results_are_whole(tmp_
 
 
 def test_two_channels_are_enough_for_saturation_and_a_known_speed_needs_no_channel():
-    truth = CarTruth(adhesion=0.7)
+    truth = CarTruth(adhesion=0.5)
     channels = ("yaw_rate", "lateral_acceleration")
     runs = generated(truth, 3, channels=channels, reach=0.12)
     runs = [

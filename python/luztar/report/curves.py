@@ -11,6 +11,7 @@ from .style import AFTER, BEFORE, MEASURED, RUNS, dressed, motion_axis, numbers,
 
 if TYPE_CHECKING:
     from ..diagnosis.fit import Fit
+    from ..diagnosis.prepare import Prepared
     from ..diagnosis.study import Study
 
 # Points of all curves of one figure together: a report with ten of them stays below 3 MB.
@@ -36,8 +37,7 @@ def loops(fit: Fit) -> Any:
             trace.showlegend = bool(trace.showlegend) and row == 1
             picture.add_trace(trace, row=row, col=1)
         picture.update_yaxes(title_text=_effort(fit, channel), row=row, col=1)
-    _, motion, unit = motion_axis(fit.model.structure)
-    picture.update_xaxes(title_text=f"{motion} [{unit}]", row=len(channels), col=1)
+    picture.update_xaxes(title_text=_abscissa_title(fit), row=len(channels), col=1)
     height = 500 if len(channels) == 1 else 80 + LOOP_HEIGHT * len(channels)
     return dressed(picture, height=height, title="Measured and modelled loops", legend=True)
 
@@ -72,8 +72,7 @@ def loops_before_after(study: Study) -> Any:
                 picture.add_trace(trace, row=row, col=column)
             if column == 1:
                 picture.update_yaxes(title_text=_effort(first, channel), row=row, col=1)
-    _, motion, unit = motion_axis(first.model.structure)
-    picture.update_xaxes(title_text=f"{motion} [{unit}]", row=len(channels))
+    picture.update_xaxes(title_text=_abscissa_title(first), row=len(channels))
     return dressed(picture, height=460 if len(channels) == 1 else 80 + LOOP_HEIGHT * len(channels), legend=True)
 
 
@@ -115,12 +114,11 @@ def residual_time(fit: Fit) -> Any:
 
 def _loop_traces(fit: Fit, channel: str, colour: str, words: str, points: int) -> list[Any]:
     go = plotly()
-    factor, _, _ = motion_axis(fit.model.structure)
     measured: list[Any] = []
     modelled: list[Any] = []
     chosen = [(r, p) for r, p in zip(fit.runs, fit.predicted, strict=True) if r.channel == channel]
     for number, (r, predicted) in enumerate(chosen):
-        x = r.motion[r.usable] * factor
+        x = _abscissa(fit, r)[r.usable]
         for values, into, name, line in (
             (r.effort, measured, "measured", {"color": MEASURED, "width": 3.5}),
             (predicted, modelled, words, {"color": colour, "width": 1}),
@@ -144,6 +142,20 @@ def _loop_traces(fit: Fit, channel: str, colour: str, words: str, points: int) -
 
 def _budget(traces: int) -> int:
     return max(min(MAX_POINTS, FIGURE_POINTS // max(traces, 1)), 200)
+
+
+def _abscissa(fit: Fit, r: Prepared) -> np.ndarray:
+    """Return the motion, or the time where the motion itself is what is explained."""
+    structure = fit.model.structure
+    return r.time_s if structure.drive else r.motion * motion_axis(structure)[0]
+
+
+def _abscissa_title(fit: Fit) -> str:
+    structure = fit.model.structure
+    if structure.drive:
+        return "time [s]"
+    _, motion, unit = motion_axis(structure)
+    return f"{motion} [{unit}]"
 
 
 def _channels(fit: Fit) -> list[str]:
