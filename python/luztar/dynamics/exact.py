@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from .. import _core
 from .._arrays import number, vector, whole_number
 from ..errors import ParameterError
@@ -31,7 +29,7 @@ PIECEWISE_LINEAR = frozenset(
     }
 )
 # Far more than a mechanism has in an hour; a run with more has a mistake in it.
-MOST_EVENTS = 1_000_000
+MOST_EVENTS = 100_000
 
 
 @dataclass(frozen=True)
@@ -91,8 +89,8 @@ def exact(
     """Solve the steering model by its closed form from event to event.
 
     Between two events a mechanism of linear springs, a gap, viscous and dry friction is linear; its motion is the
-    exponential of a matrix, summed to rounding. Where a mode ends is isolated by bounds on the motion, not by looking at
-    samples of it, and located to rounding: about 1e-15 of the time.
+    exponential of a matrix, summed to rounding. Where a mode ends is isolated by bounds on the motion, not by looking
+    at samples of it, and located to rounding: about 1e-15 of the time.
 
     Parameters
     ----------

@@ -57,14 +57,16 @@ fn isolate(
     if coefficients.iter().all(|&c| c >= 0.0) {
         return None;
     }
-    if coefficients[0] < 0.0 || depth == DEEPEST {
+    // From 0 on, the first coefficient that is not 0 tells to which side.
+    let start = coefficients.iter().find(|&&c| c != 0.0);
+    if start.is_some_and(|&c| c < 0.0) || depth == DEEPEST {
         return Some(from);
     }
     let changes = coefficients
         .windows(2)
         .filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0))
         .count();
-    if changes == 1 {
+    if changes == 1 && coefficients[0] > 0.0 {
         return Some(bracketed(&|share| horner(power, share), from, to));
     }
     let middle = 0.5 * (from + to);
