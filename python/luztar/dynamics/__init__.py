@@ -7,6 +7,9 @@ chatters.
 
 from .batch import simulate as simulate
 from .batch import summarise as summarise
+from .bodies import ExactBodies as ExactBodies
+from .bodies import GapSpring as GapSpring
+from .bodies import exact_bodies as exact_bodies
 from .exact import Exact as Exact
 from .exact import ExactEvent as ExactEvent
 from .exact import exact as exact
