@@ -261,11 +261,51 @@ def test_break_away_on_a_ramp_and_on_a_sine(static, kinetic):
     assert np.abs(run.roadwheel_rad - (way - kinetic * tau**2 / 2.0) / inertia)[moving].max() < TRUST
 
 
-def test_break_away_behind_a_gap_on_a_ramp_of_the_handwheel():
-    # Contact at z0 / W, break-away at (z0 + FS / (p K)) / W.
-    ratio, stiffness, half_gap, static, pace = 16.0, 60.0, 0.05, 12.0, 0.3
-    parts = body(inertia=3.0, ratio=ratio, stiffness=stiffness, gap=2.0 * half_gap, coulomb=8.1, stiction=static - 8.1)
-    run = exact(parts, Signal.polynomial(0.0, pace), [0.0, 1.0])
+# The seed paper's one-mass steering, and the radius of its play operator.
+STEERING = {"inertia": 3.0, "ratio": 16.0, "stiffness": 60.0, "gap": 0.1, "viscous": 40.0, "coulomb": 8.1}
+RADIUS = 0.05 + 8.1 / (16.0 * 60.0)
+
+
+def lag(tau: np.ndarray, pace: float) -> np.ndarray:
+    """How far p phi is behind the play of a handwheel of a pace after break-away: e'' + 2a e' + w^2 e = 2a pace."""
+    a, square = 40.0 / (2.0 * 3.0), 16.0**2 * 60.0 / 3.0
+    damped, final = math.sqrt(square - a * a), 2.0 * a * pace / square
+    swing = -final * np.cos(damped * tau) + (pace - a * final) / damped * np.sin(damped * tau)
+    return final + np.exp(-a * tau) * swing
+
+
+def test_a_ramp_of_the_handwheel_through_gap_and_friction():
+    # Contact at z0 / W, break-away at (z0 + FS / (p K)) / W, then a swing about play less viscous lag.
+    pace = 0.3
+    t = np.linspace(0.0, 3.0, 3001)
+    run = exact(body(**STEERING), Signal.polynomial(0.0, pace), t)
     assert [e.kind for e in run.events[:2]] == ["contact", "slip"]
-    assert run.events[0].time_s == pytest.approx(half_gap / pace, rel=1e-14)
-    assert run.events[1].time_s == pytest.approx((half_gap + static / (ratio * stiffness)) / pace, rel=1e-13)
+    assert run.events[0].time_s == pytest.approx(0.05 / pace, rel=1e-14)
+    assert run.events[1].time_s == pytest.approx(RADIUS / pace, rel=1e-13)
+    # It swings beyond a standstill once or more: until then the motion is one mode.
+    stop = min([e.time_s for e in run.events[2:]], default=t[-1])
+    moving = (t >= RADIUS / pace) & (t <= stop)
+    assert moving.sum() > 20
+    wanted = pace * t[moving] - RADIUS - lag(t[moving] - RADIUS / pace, pace)
+    assert np.abs(16.0 * run.roadwheel_rad[moving] - wanted).max() < TRUST
+    # Steady: nothing is left but the viscous lag mu W / (p^2 K).
+    assert 16.0 * run.roadwheel_rad[-1] == pytest.approx(
+        pace * t[-1] - RADIUS - 40.0 * pace / (16.0**2 * 60.0), abs=1e-9
+    )
+
+
+def test_slow_motion_is_the_play_of_half_gap_and_friction():
+    # The largest distance from play is that of the first break-away; over the frequency it tends to a constant, the
+    # largest lag behind a ramp of the pace that the hand then has.
+    def distance(hz):
+        away = math.asin(RADIUS) / (2.0 * math.pi * hz)
+        t = np.concatenate(([0.0], away + np.linspace(0.0, 0.3, 30_001)))
+        run = exact(body(**STEERING), Signal.sine(1.0, 2.0 * math.pi * hz), t)
+        return np.abs(16.0 * run.roadwheel_rad - np.maximum(np.sin(2.0 * math.pi * hz * t) - RADIUS, 0.0)).max() / hz
+
+    tau = np.linspace(0.0, 0.3, 30_001)
+    limit = lag(tau, 2.0 * math.pi * math.cos(math.asin(RADIUS))).max()
+    # The reference's page: 4.6e-2, 4.6e-3 and 4.6e-4 rad at 0.5, 0.05 and 0.005 Hz, at its own instants.
+    assert distance(0.05) == pytest.approx(9.2e-2, rel=0.05)
+    assert distance(5e-4) == pytest.approx(limit, rel=1e-3)
+    assert distance(5e-6) == pytest.approx(limit, rel=1e-5)

@@ -1,6 +1,7 @@
 """Two bodies with dry friction and a gap between them, each mode by DOP853, stopped at every event.
 
-Shares no code with luztar: a mode is a pair of directions and a side of the gap; an event function ends each part of it.
+Shares no code with luztar: a mode is a pair of directions and a side of the gap; an event function ends each of its
+parts.
 """
 
 from __future__ import annotations

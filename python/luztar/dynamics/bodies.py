@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -133,7 +134,7 @@ def exact_bodies(
         [drive(f"loads[{i}]", load, times) for i, load in enumerate(given)],
         _square("stiffness", stiffness, n),
         _square("damping", damping, n),
-        [_spring(f"springs[{j}]", spring, times) for j, spring in enumerate(springs)],
+        [_spring(f"springs[{j}]", spring, n, times) for j, spring in enumerate(springs)],
         [tuple(row) for row in starts.tolist()],
         times_s=times,
         most_events=whole_number("most_events", most_events, 1, 2**53),
@@ -142,13 +143,15 @@ def exact_bodies(
     return ExactBodies(times, angle, speed, told)
 
 
-def _spring(name: str, spring: GapSpring, times_s: np.ndarray) -> tuple[float, float, np.ndarray, Any]:
-    return (
-        number(f"{name}.stiffness", spring.stiffness),
-        number(f"{name}.gap", spring.gap) / 2.0,
-        vector(f"{name}.at", spring.at),
-        drive(f"{name}.end", spring.end, times_s),
-    )
+def _spring(name: str, spring: GapSpring, n: int, times_s: np.ndarray) -> tuple[float, float, np.ndarray, Any]:
+    for key in ("stiffness", "gap"):
+        value = number(f"{name}.{key}", getattr(spring, key))
+        if not (math.isfinite(value) and value >= 0.0):
+            raise ParameterError(f"{name}.{key} is {value}", f"{name}.{key}", "Give a number that is not negative.")
+    at = vector(f"{name}.at", spring.at)
+    if at.size != n:
+        raise ParameterError(f"{name}.at holds {at.size} values for {n} bodies", f"{name}.at", "Give one per body.")
+    return float(spring.stiffness), float(spring.gap) / 2.0, at, drive(f"{name}.end", spring.end, times_s)
 
 
 def _each(name: str, value: Any, n: int) -> np.ndarray:

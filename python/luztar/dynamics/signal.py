@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._arrays import number, rows, vector
+from .._arrays import number, refuse_not_finite, rows, vector
 from ..errors import ParameterError
 
 # (breaks, coefficients, sines), as the core takes a signal.
@@ -117,7 +117,10 @@ class Signal:
         """
         breaks = vector(f"{name}.breaks_s", self.breaks_s)
         cubics = rows(f"{name}.coefficients", self.coefficients, 4)
-        return breaks, cubics, rows(f"{name}.sines", self.sines, 3)
+        sines = rows(f"{name}.sines", self.sines, 3)
+        refuse_not_finite(f"{name}.coefficients", cubics)
+        refuse_not_finite(f"{name}.sines", sines)
+        return breaks, cubics, sines
 
 
 def drive(name: str, value: Signal | float, times_s: Sequence[float] | np.ndarray) -> Parts:

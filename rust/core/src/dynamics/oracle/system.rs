@@ -80,7 +80,7 @@ impl System {
             require_same_length("at", &spring.at, "inertia", count)?;
             crate::error::require_finite("at", &spring.at)?;
             not_negative("stiffness", spring.stiffness)?;
-            not_negative("half_gap", spring.half_gap)?;
+            not_negative("gap", 2.0 * spring.half_gap)?;
         }
         Ok(Self {
             bodies,
@@ -152,10 +152,10 @@ fn check_body(body: &Body) -> Result<(), Error> {
     for side in 0..2 {
         not_negative("viscous", body.viscous[side])?;
         not_negative("kinetic", body.kinetic[side])?;
-        crate::error::require_finite("held", &[body.held[side]])?;
+        crate::error::require_finite("static", &[body.held[side]])?;
         if body.held[side] < body.kinetic[side] {
             return Err(Error::OutOfRange {
-                name: "held",
+                name: "static",
                 value: body.held[side],
                 interval: format!(
                     "[{}, inf): static friction is at least kinetic friction",
