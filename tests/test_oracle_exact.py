@@ -13,10 +13,9 @@ from scipy.optimize import minimize_scalar
 
 from luztar.dynamics import Signal, exact
 
+from .exact_figures import DEN_HARTOG, TRUST, den_hartog
 from .one_mass_cases import body
 
-# What the oracle is trusted to.
-TRUST = 1e-10
 # Eight digits are given.
 DIGITS = 6e-9
 
@@ -62,26 +61,6 @@ def test_free_decay_with_viscous_friction(zeta):
     for j, (event, size) in enumerate(zip(seen, wanted, strict=True), start=1):
         assert event.angle_rad == pytest.approx((-1) ** j * size, abs=TRUST)
         assert event.time_s == pytest.approx(j * math.pi / damped, rel=1e-12)
-
-
-def den_hartog(r: float, share: float, zeta: float) -> float:
-    """Amplitude over P / k of the motion without stops."""
-    b, s = 1.0 / r, math.sqrt(1.0 - zeta**2)
-    under = math.cosh(zeta * b * math.pi) + math.cos(b * s * math.pi)
-    g = (math.sinh(zeta * b * math.pi) - zeta / s * math.sin(b * s * math.pi)) / under
-    h = b / s * math.sin(b * s * math.pi) / under
-    q = (1.0 - r**2) ** 2 + (2.0 * zeta * r) ** 2
-    return -g * share + math.sqrt(1.0 / q - (h * share) ** 2)
-
-
-DEN_HARTOG = [
-    (0.6, 0.2, 0.0, 1.55060285),
-    (0.8, 0.5, 0.0, 2.33223499),
-    (1.2, 0.5, 0.0, 1.65746747),
-    (1.5, 0.3, 0.0, 0.72111026),
-    (0.7, 0.3, 0.1, 1.63078610),
-    (1.3, 0.4, 0.05, 1.05301703),
-]
 
 
 @pytest.mark.parametrize(("r", "share", "zeta", "amplitude"), DEN_HARTOG)
