@@ -179,7 +179,7 @@ def test_the_step_is_of_second_order_on_mechanisms_at_large():
 
 
 def drawn(chance: np.random.Generator) -> tuple[dict[str, float], list]:
-    """A mechanism as above, without the corner values (limits met to the last bit) at which a general solver chatters."""
+    """A mechanism as above, without the corner values (limits met to the bit) at which a general solver chatters."""
     inertia, ratio = chance.uniform(0.5, 5.0), chance.uniform(1.0, 20.0)
     spring = inertia * (2.0 * math.pi * chance.uniform(0.5, 8.0)) ** 2
     level = spring * chance.uniform(0.01, 0.3)
