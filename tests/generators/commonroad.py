@@ -34,6 +34,7 @@ def drive(run: Any, speed_m_s: float, *, multi_body: bool) -> dict[str, np.ndarr
     return {
         "time_s": solved.t,
         "yaw_rate_rad_s": solved.y[5],
-        "roll_rad": solved.y[6] if multi_body else np.zeros(solved.t.size),
+        # Their roll angle is positive to the left.
+        "roll_rad": -solved.y[6] if multi_body else np.zeros(solved.t.size),
         "y_m": solved.y[1],
     }
