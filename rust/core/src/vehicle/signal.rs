@@ -187,8 +187,8 @@ impl<'a> Sampled<'a> {
         } else {
             [
                 -(3.0 * t * t - 12.0 * t + 11.0) / 6.0,
-                (3.0 * t * t - 10.0 * t + 6.0) / 2.0,
-                -(3.0 * t * t - 8.0 * t + 3.0) / 2.0,
+                0.5 * (3.0 * t * t - 10.0 * t + 6.0),
+                -0.5 * (3.0 * t * t - 8.0 * t + 3.0),
                 (3.0 * t * t - 6.0 * t + 2.0) / 6.0,
             ]
             .map(|w| w * self.sample_rate_hz)
@@ -198,6 +198,17 @@ impl<'a> Sampled<'a> {
 }
 
 impl Signal<'_> {
+    /// The latest time at which a row begins; before it its value is 0.
+    pub(super) fn begins_s(&self) -> f64 {
+        match self {
+            Self::Segments(s) => {
+                let firsts = s.start_s.iter().step_by(s.count);
+                firsts.fold(f64::NEG_INFINITY, |late, start| late.max(*start))
+            }
+            Self::Sampled(_) => f64::NEG_INFINITY,
+        }
+    }
+
     /// Whether it keeps its first values for ever.
     pub(super) fn is_constant(&self) -> bool {
         match self {
