@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.stats import t
 
 import luztar
+from estimates import inside_99
 from generators.steering import Hand, Mechanism, simulate
 from luztar.errors import ModelError
 
@@ -28,13 +28,6 @@ def generated(seed: int, *, runs: int = 3, seconds: float = 8.0, **friction) -> 
         units = {"time": "s", "force": "N", "position": "m"}
         out.append(luztar.Run(name=f"run{i}", time=times, force=force(times), position=position, units=units))
     return out
-
-
-def inside_99(estimate, truth: float, strokes: int) -> bool:
-    """Whether the truth lies in the 99 % interval, from the half width of the 95 % one."""
-    half = (estimate.high - estimate.low) / 2.0
-    wider = t.ppf(0.995, strokes - 1) / t.ppf(0.975, strokes - 1)
-    return abs(estimate.value - truth) <= wider * half
 
 
 @pytest.mark.parametrize(

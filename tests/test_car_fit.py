@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import t
 
 import luztar
+from estimates import inside_99
 from generators.hidden_car import NOISE, CarTruth, car_run, drive
 from generators.steering import Hand
 from luztar.errors import MeasurementError, ModelError
@@ -29,13 +29,6 @@ def generated(truth: CarTruth, seed: int, *, runs: int = 3, seconds: float = 10.
     chance = np.random.default_rng(seed)
     made = [car_run(truth, chance, seconds=seconds, **how) for _ in range(runs)]
     return [luztar.Run(name=f"run{i}", units={k: UNITS[k] for k in run}, **run) for i, run in enumerate(made)]
-
-
-def inside_99(estimate, truth: float, strokes: int) -> bool:
-    """Whether the truth lies in the 99 % interval, from the half width of the 95 % one."""
-    half = (estimate.high - estimate.low) / 2.0
-    wider = t.ppf(0.995, strokes - 1) / t.ppf(0.975, strokes - 1)
-    return abs(estimate.value - truth) <= wider * half
 
 
 @pytest.mark.parametrize(

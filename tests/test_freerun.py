@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import t
 
 import luztar
+from estimates import inside_99
 from generators.steering import Mechanism, drawn_hand, simulate, steering_run
 from luztar.errors import MeasurementError, ModelError
 from shared_data import case
@@ -26,13 +26,6 @@ def generated(m: Mechanism, seed: int, *, runs: int = 3, seconds: float = 10.0) 
     units = {"time": "s", "handwheel": "rad", "roadwheel": "rad"}
     made = (steering_run(m, chance, seconds=seconds, rate_hz=200.0) for _ in range(runs))
     return [luztar.Run(name=f"run{i}", units=units, **run) for i, run in enumerate(made)]
-
-
-def inside_99(estimate, truth: float, strokes: int) -> bool:
-    """Whether the truth lies in the 99 % interval, from the half width of the 95 % one."""
-    half = (estimate.high - estimate.low) / 2.0
-    wider = t.ppf(0.995, strokes - 1) / t.ppf(0.975, strokes - 1)
-    return abs(estimate.value - truth) <= wider * half
 
 
 @pytest.mark.parametrize("name", ["steering-00", "steering-01", "steering-03"])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..model import Card, Model, cards
+from ..model import Card, Model, card, cards
 from ..model.cards import own_cards
 
 if TYPE_CHECKING:
@@ -160,7 +160,5 @@ class Motion:
 
 def keys_of(model: Model) -> tuple[str, ...]:
     """Return the keys of the structure's own parameters, then those of the effects."""
-    from ..model import card
-
     every = (*own_cards(model.structure_name), *(card(e, model.structure_name) for e in model.effects))
     return tuple(f"{c.name}.{p.key}" for c in every for p in c.parameters)
