@@ -60,11 +60,12 @@ def test_stribeck_friction_is_found_beside_a_force_sensor_that_is_not_zeroed():
         luztar.Run(name=r.name, time=r.time_s, force=r["force"] + 2.0, position=r["position"], units={"time": "s"})
         for r in generated(5, seconds=16.0, stribeck=8.0, stribeck_speed=0.1)
     ]
-    look = luztar.diagnose(luztar.fit(luztar.Model.axis(free=True), runs))
+    fitted = luztar.fit(luztar.Model.axis(free=True), runs)
+    look = luztar.diagnose(fitted)
     assert look.verdict == "named" and look.named == ("stribeck",)
-    fitted = luztar.fit(luztar.Model.axis(free=True) + "stribeck", runs)
-    assert fitted.parameters["offset.level_n"].value == pytest.approx(2.0, abs=0.02)
-    assert fitted.parameters["stribeck.extra_n"].value == pytest.approx(8.0, rel=0.02)
+    found = look.tried[0].solution.found
+    assert found["offset.level_n"] == pytest.approx(2.0, abs=0.02)
+    assert found["stribeck.extra_n"] == pytest.approx(8.0, rel=0.02)
     assert fitted.figure().layout.xaxis.title.text == "time [s]"
 
 
