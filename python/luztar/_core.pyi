@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, Self, TypedDict, final, type_check_only
 
 import numpy as np
@@ -23,6 +23,7 @@ __all__ = [
     "RollingPolynomial",
     "ZeroPhase",
     "__version__",
+    "check_lanes",
     "effect_cards",
     "even",
     "extremes",
@@ -32,16 +33,16 @@ __all__ = [
     "held_out",
     "huber",
     "instruction_sets",
+    "lane_columns",
     "moments_by_label",
     "moments_by_window",
     "normal_equations",
     "project",
     "rolling",
+    "run_lanes",
     "simulate_steering",
     "solve_block",
     "steering_parameters",
-    "steering_summary_names",
-    "summarise_steering",
     "theil_sen",
     "trace_steering",
 ]
@@ -448,8 +449,19 @@ def simulate_steering(
     phi: NDArray[np.float64],
     speed: NDArray[np.float64] | None,
 ) -> None: ...
-def steering_summary_names() -> list[str]: ...
-def summarise_steering(
+def lane_columns(
+    samples: int, events: bool, energy: bool, window: int, chosen: Sequence[int]
+) -> list[tuple[str, int]]: ...
+def check_lanes(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+) -> None: ...
+def run_lanes(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
     handwheel_rad: NDArray[np.float64],
@@ -459,7 +471,15 @@ def summarise_steering(
     substeps: int,
     method: str,
     width: str,
-    out: NDArray[np.float64],
+    events: bool,
+    energy: bool,
+    window: int,
+    chosen: Sequence[int],
+    rows: NDArray[np.float64],
+    done: NDArray[np.bool_],
+    phi: NDArray[np.float64] | None,
+    speed: NDArray[np.float64] | None,
+    told: Callable[[int], object] | None,
 ) -> None: ...
 def trace_steering(
     parameters: NDArray[np.float64],

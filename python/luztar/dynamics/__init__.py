@@ -7,8 +7,10 @@ chatters.
 
 from .batch import simulate as simulate
 from .batch import summarise as summarise
+from .keep import REDUCERS as REDUCERS
 from .lanes import COLUMNS as COLUMNS
 from .lanes import METHODS as METHODS
+from .summary import Summary as Summary
 from .trace import trace as trace
 from .trajectory import Event as Event
 from .trajectory import Trace as Trace

@@ -11,19 +11,29 @@
     clippy::needless_range_loop
 )]
 
+mod control;
 mod drive;
 mod events;
+mod keep;
+mod lane_check;
+mod lane_drives;
 mod lanes;
 mod ledger;
 mod moreau;
 mod number;
+mod observe;
 mod one_mass;
 mod split;
 mod trace;
+mod watched;
 
+pub use control::Control;
 pub use drive::Drive;
 pub use events::{Event, EventKind};
-pub use lanes::{Batch, Kernel, SUMMARY, Start, Width, simulate, summarise};
+pub use keep::{ENERGIES, Keep, SUMMARY};
+pub use lane_check::check_lanes;
+pub use lane_drives::{Channel, LaneDrives};
+pub use lanes::{Batch, Drives, Kernel, Results, Start, Width, run_lanes, simulate};
 pub use ledger::Ledger;
 pub use number::Pure;
 pub use one_mass::{NAMES, OneMass, PARAMETERS};

@@ -1,5 +1,6 @@
 //! Where the energy of a trajectory went.
 
+use super::keep::ENERGIES;
 use super::number::Pure;
 use super::one_mass::OneMass;
 use super::split::Step;
@@ -34,6 +35,22 @@ impl Ledger {
             - self.dry
             - self.viscous
             - self.curved
+    }
+
+    /// In the order of [`super::ENERGIES`].
+    #[must_use]
+    pub fn to_array(&self) -> [f64; ENERGIES.len()] {
+        [
+            self.handwheel,
+            self.load,
+            self.stored_first,
+            self.stored_last,
+            self.dry,
+            self.viscous,
+            self.curved,
+            self.turnover,
+            self.residual(),
+        ]
     }
 
     /// Books one sub-step of length `h` from (`phi`, `v`), driven from `first` to `last` (handwheel, load).

@@ -4,7 +4,8 @@ use crate::Error;
 
 use super::drive::Drive;
 use super::events::{Event, beyond_gap, friction_events, gap_event};
-use super::lanes::{Batch, Kernel, Start, Width, check};
+use super::lane_check::check_lanes;
+use super::lanes::{Drives, Kernel, Start};
 use super::ledger::Ledger;
 use super::number::Pure;
 use super::one_mass::OneMass;
@@ -33,13 +34,7 @@ pub fn trace(
     kernel: Kernel,
     drive: &Drive,
 ) -> Result<Trace, Error> {
-    let batch = Batch {
-        bodies: &[*body],
-        starts: &[start],
-        kernel,
-        width: Width::Baseline,
-    };
-    check(batch, drive)?;
+    check_lanes(&[*body], &[start], Drives::Shared(drive))?;
     let rich = body.is_rich();
     let body = body.pure();
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
