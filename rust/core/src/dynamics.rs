@@ -14,6 +14,7 @@
 mod control;
 mod drive;
 mod events;
+mod inside;
 mod keep;
 mod lane_check;
 mod lane_drives;

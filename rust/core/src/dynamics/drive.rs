@@ -219,16 +219,19 @@ impl Refinement {
         [a, b, c, d]
     }
 
-    /// The value at a half sub-step, the samples themselves at both ends of the interval.
-    #[inline(always)]
-    pub fn value(&self, [a, b, c, d]: [f64; 4], part: usize) -> f64 {
+    /// The value at a half sub-step, the sample itself at the start of the interval.
+    fn value(&self, [a, b, c, d]: [f64; 4], part: usize) -> f64 {
         if part == 0 {
             return b;
         }
-        match self.weights.get(part) {
-            Some([p, q, r, s]) => p * a + q * b + r * c + s * d,
-            None => c,
-        }
+        let [p, q, r, s] = self.weights[part];
+        p * a + q * b + r * c + s * d
+    }
+
+    /// The weights at the middle and the end of a sub-step; none at the end of the interval, which is a sample.
+    #[inline(always)]
+    pub fn half_steps(&self, sub: usize) -> [Option<[f64; 4]>; 2] {
+        [2 * sub + 1, 2 * sub + 2].map(|part| self.weights.get(part).copied())
     }
 
     /// All values of a record and its last sample.

@@ -104,8 +104,8 @@ impl<'a> LaneDrives<'a> {
         BlockDrives {
             of: self,
             lane: std::array::from_fn(|k| first + k.min(lanes - 1)),
-            psi: Neighbours::ZERO,
-            load: Neighbours::ZERO,
+            psi: [[0.0; N]; 4],
+            load: [[0.0; N]; 4],
         }
     }
 }
@@ -120,53 +120,42 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// The four samples around an interval, and the values over the current sub-step, of a block of lanes.
-struct Neighbours<const N: usize> {
-    around: [[f64; N]; 4],
-    start: [f64; N],
-    middle: [f64; N],
-    end: [f64; N],
+/// What drives a block of lanes over one sub-step: both channels at its start, middle and end.
+pub(super) struct Spans<const N: usize> {
+    psi: [[f64; N]; 3],
+    load: [[f64; N]; 3],
 }
 
-impl<const N: usize> Neighbours<N> {
-    const ZERO: Self = Self {
-        around: [[0.0; N]; 4],
-        start: [0.0; N],
-        middle: [0.0; N],
-        end: [0.0; N],
-    };
-
-    #[inline(always)]
-    fn parabola(&self, lane: usize) -> Parabola {
-        Parabola {
-            start: Pure(self.start[lane]),
-            middle: Pure(self.middle[lane]),
-            end: Pure(self.end[lane]),
+impl<const N: usize> Spans<N> {
+    pub fn new() -> Self {
+        Self {
+            psi: [[0.0; N]; 3],
+            load: [[0.0; N]; 3],
         }
     }
 
-    fn load(&mut self, channel: &Channel<'_>, lanes: &[usize; N], samples: usize, interval: usize) {
-        for k in 0..N {
-            let around = Refinement::around(channel.record(lanes[k], samples), interval);
-            for (row, value) in self.around.iter_mut().zip(around) {
-                row[k] = value;
+    /// The same for all lanes.
+    #[inline(always)]
+    pub fn share(&mut self, span: &Span) {
+        for (rows, parabola) in [(&mut self.psi, span.psi), (&mut self.load, span.load)] {
+            let values = [parabola.start, parabola.middle, parabola.end];
+            for (row, value) in rows.iter_mut().zip(values) {
+                *row = [value.0; N];
             }
         }
-        self.end = self.around[1];
     }
 
+    /// What drives a lane.
     #[inline(always)]
-    fn advance(&mut self, refinement: &Refinement, sub: usize) {
-        self.start = self.end;
-        for k in 0..N {
-            let around = [
-                self.around[0][k],
-                self.around[1][k],
-                self.around[2][k],
-                self.around[3][k],
-            ];
-            self.middle[k] = refinement.value(around, 2 * sub + 1);
-            self.end[k] = refinement.value(around, 2 * sub + 2);
+    pub fn of(&self, lane: usize) -> Span {
+        let parabola = |rows: &[[f64; N]; 3]| Parabola {
+            start: Pure(rows[0][lane]),
+            middle: Pure(rows[1][lane]),
+            end: Pure(rows[2][lane]),
+        };
+        Span {
+            psi: parabola(&self.psi),
+            load: parabola(&self.load),
         }
     }
 }
@@ -175,34 +164,50 @@ impl<const N: usize> Neighbours<N> {
 pub(super) struct BlockDrives<'a, const N: usize> {
     of: &'a LaneDrives<'a>,
     lane: [usize; N],
-    psi: Neighbours<N>,
-    load: Neighbours<N>,
+    psi: [[f64; N]; 4],
+    load: [[f64; N]; 4],
 }
 
 impl<const N: usize> BlockDrives<'_, N> {
-    /// Goes to the sub-step of an interval; they must be asked for in order.
+    /// Goes to a sub-step of an interval; they must be asked for in order.
     #[inline(always)]
-    pub fn advance(&mut self, interval: usize, sub: usize) {
-        if sub == 0 {
-            let samples = self.of.samples;
-            self.psi
-                .load(&self.of.handwheel, &self.lane, samples, interval);
-            if let Some(channel) = &self.of.load {
-                self.load.load(channel, &self.lane, samples, interval);
+    pub fn advance(&mut self, spans: &mut Spans<N>, interval: usize, sub: usize) {
+        let Self {
+            of,
+            lane,
+            psi,
+            load,
+        } = self;
+        let weights = of.refinement.half_steps(sub);
+        for (channel, around, rows) in [
+            (Some(of.handwheel), psi, &mut spans.psi),
+            (of.load, load, &mut spans.load),
+        ] {
+            let Some(channel) = channel else { continue };
+            if sub == 0 {
+                for k in 0..N {
+                    let record = channel.record(lane[k], of.samples);
+                    let four = Refinement::around(record, interval);
+                    for (row, value) in around.iter_mut().zip(four) {
+                        row[k] = value;
+                    }
+                }
+                rows[2] = around[1];
             }
-        }
-        self.psi.advance(&self.of.refinement, sub);
-        if self.of.load.is_some() {
-            self.load.advance(&self.of.refinement, sub);
-        }
-    }
-
-    /// What drives a lane over the current sub-step.
-    #[inline(always)]
-    pub fn span(&self, lane: usize) -> Span {
-        Span {
-            psi: self.psi.parabola(lane),
-            load: self.load.parabola(lane),
+            rows[0] = rows[2];
+            for (row, weights) in rows[1..].iter_mut().zip(weights) {
+                match weights {
+                    Some([p, q, r, s]) => {
+                        for k in 0..N {
+                            row[k] = p * around[0][k]
+                                + q * around[1][k]
+                                + r * around[2][k]
+                                + s * around[3][k];
+                        }
+                    }
+                    None => *row = around[2],
+                }
+            }
         }
     }
 }

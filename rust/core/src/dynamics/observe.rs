@@ -1,12 +1,7 @@
-//! What is looked at while a block of lanes runs, and written where it is kept.
+//! What is looked at while a block of lanes runs from sample to sample, and written where it is kept.
 
-use super::drive::Span;
-use super::events::{EventKind, Turns, beyond_gap};
-use super::keep::{ENERGIES, Keep, SUMMARY};
-use super::ledger::Ledger;
+use super::keep::{Keep, SUMMARY};
 use super::number::Pure;
-use super::one_mass::OneMass;
-use super::split::Step;
 use crate::effects::Lane;
 
 /// Where the results of a block go; what nobody wants is empty.
@@ -136,74 +131,5 @@ impl<'a, const N: usize> Samples<'a, N> {
             }
         }
         self.places.done.fill(true);
-    }
-}
-
-/// Events counted and energies booked inside the steps of a block.
-pub(super) struct Inside<const N: usize> {
-    counts: [[f64; N]; EventKind::ALL.len()],
-    beyond: [f64; N],
-    ledgers: [Ledger; N],
-}
-
-impl<const N: usize> Inside<N> {
-    pub fn new() -> Self {
-        Self {
-            counts: [[0.0; N]; EventKind::ALL.len()],
-            beyond: [0.0; N],
-            ledgers: [Ledger::default(); N],
-        }
-    }
-
-    /// A lane before its first step.
-    pub fn begin(&mut self, lane: usize, body: &OneMass<Pure>, span: &Span, phi: Pure, v: Pure) {
-        let (psi, _) = span.start();
-        self.ledgers[lane].stored_first = body.stored(psi, phi, v).0;
-        self.beyond[lane] = beyond_gap(body, psi.0, phi);
-    }
-
-    /// A lane after one step of length `h` from (`phi`, `v`).
-    #[inline(always)]
-    pub fn step(
-        &mut self,
-        lane: usize,
-        body: &OneMass<Pure>,
-        h: f64,
-        span: &Span,
-        (phi, v): (Pure, Pure),
-        step: &Step,
-    ) {
-        let turns = Turns::of(v, step);
-        let next = beyond_gap(body, span.end().0.0, step.phi);
-        let (was, is) = (self.beyond[lane] > 0.0, next > 0.0);
-        let has_gap = body.gap.0 > 0.0;
-        self.beyond[lane] = next;
-        for (row, happened) in self.counts.iter_mut().zip([
-            turns.stick,
-            turns.slip,
-            turns.reversal,
-            has_gap & !was & is,
-            has_gap & was & !is,
-        ]) {
-            row[lane] += Pure::ONE.when(happened, Pure::ZERO).0;
-        }
-        self.ledgers[lane].book(body, h, (phi, v), step, (span.start(), span.end()));
-    }
-
-    /// A lane after its last step.
-    pub fn end(&mut self, lane: usize, body: &OneMass<Pure>, span: &Span, phi: Pure, v: Pure) {
-        let ledger = &mut self.ledgers[lane];
-        ledger.stored_last = body.stored(span.end().0, phi, v).0;
-        ledger.turnover += ledger.stored_first;
-    }
-
-    /// Writes the counts and energies of a lane; either may be empty.
-    pub fn write(&self, lane: usize, counts: &mut [f64], energies: &mut [f64]) {
-        for (place, row) in counts.iter_mut().zip(&self.counts) {
-            *place = row[lane];
-        }
-        if energies.len() == ENERGIES.len() {
-            energies.copy_from_slice(&self.ledgers[lane].to_array());
-        }
     }
 }
