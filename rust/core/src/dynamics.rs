@@ -20,11 +20,13 @@ mod lane_check;
 mod lane_drives;
 mod lanes;
 mod ledger;
+mod march;
 mod moreau;
 mod number;
 mod observe;
 mod one_mass;
 mod split;
+mod tile;
 mod trace;
 mod watched;
 

@@ -4,15 +4,12 @@ use super::events::{EventKind, Turns, beyond_gap};
 use super::keep::ENERGIES;
 use super::lane_drives::Spans;
 use super::ledger::Ledger;
+use super::march::{Advance, Lanes, State};
 use super::number::Pure;
-use super::one_mass::{OneMass, PARAMETERS};
 use super::split::Step;
 
-/// The parameters of a block, a row of lanes for each.
-pub(super) type Table<const N: usize> = [[f64; N]; PARAMETERS];
-
 /// One step of every lane.
-pub(super) struct Steps<const N: usize> {
+struct Steps<const N: usize> {
     rows: [[f64; N]; 6],
 }
 
@@ -51,16 +48,11 @@ impl<const N: usize> Steps<N> {
             speed_turn,
         }
     }
-
-    /// Angles and speeds at the end of the step.
-    #[inline(always)]
-    pub fn end(&self) -> ([f64; N], [f64; N]) {
-        (self.rows[0], self.rows[1])
-    }
 }
 
 /// Events and energies of every lane.
 pub(super) struct Inside<const N: usize> {
+    steps: Steps<N>,
     counts: [[f64; N]; EventKind::ALL.len()],
     beyond: [f64; N],
     ledgers: [Ledger; N],
@@ -69,6 +61,7 @@ pub(super) struct Inside<const N: usize> {
 impl<const N: usize> Inside<N> {
     pub fn new() -> Self {
         Self {
+            steps: Steps::new(),
             counts: [[0.0; N]; EventKind::ALL.len()],
             beyond: [0.0; N],
             ledgers: [Ledger::default(); N],
@@ -76,41 +69,44 @@ impl<const N: usize> Inside<N> {
     }
 
     /// Before the first step.
-    pub fn begin(&mut self, table: &Table<N>, spans: &Spans<N>, phi: &[f64; N], v: &[f64; N]) {
+    pub fn begin(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &State<N>) {
         for lane in 0..N {
-            let body = OneMass::gather(table, lane);
+            let (body, _) = lanes.lane(lane);
+            let (phi, v) = state.at(lane);
             let (psi, _) = spans.of(lane).start();
-            let (phi, v) = (Pure(phi[lane]), Pure(v[lane]));
             self.ledgers[lane].stored_first = body.stored(psi, phi, v).0;
             self.beyond[lane] = beyond_gap(&body, psi.0, phi);
         }
     }
 
-    /// After one step of length `h` from angles and speeds.
+    /// Takes every lane one sub-step further and looks at what happened.
     #[inline(always)]
-    pub fn step(
-        &mut self,
-        table: &Table<N>,
-        h: f64,
-        spans: &Spans<N>,
-        (phi, v): (&[f64; N], &[f64; N]),
-        steps: &Steps<N>,
-    ) {
-        self.count(table, spans, v, steps);
+    pub fn step<A: Advance>(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &mut State<N>) {
+        // One loop for each job: together they are too much for the registers.
         for lane in 0..N {
-            let (body, span) = (OneMass::gather(table, lane), spans.of(lane));
-            let before = (Pure(phi[lane]), Pure(v[lane]));
-            let drives = (span.start(), span.end());
-            self.ledgers[lane].book(&body, h, before, &steps.get(lane), drives);
+            let (body, pace) = lanes.lane(lane);
+            let (phi, v) = state.at(lane);
+            let step = A::step(&body, &spans.of(lane), pace, phi, v);
+            self.steps.put(lane, &step);
         }
+        self.count(lanes, spans, state);
+        for lane in 0..N {
+            let (body, pace) = lanes.lane(lane);
+            let span = spans.of(lane);
+            let drives = (span.start(), span.end());
+            let step = self.steps.get(lane);
+            self.ledgers[lane].book(&body, pace.h.0, state.at(lane), &step, drives);
+        }
+        (state.phi, state.v) = (self.steps.rows[0], self.steps.rows[1]);
     }
 
     #[inline(always)]
-    fn count(&mut self, table: &Table<N>, spans: &Spans<N>, v: &[f64; N], steps: &Steps<N>) {
+    fn count(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &State<N>) {
         for lane in 0..N {
-            let body = OneMass::gather(table, lane);
-            let step = steps.get(lane);
-            let turns = Turns::of(Pure(v[lane]), &step);
+            let (body, _) = lanes.lane(lane);
+            let step = self.steps.get(lane);
+            let (_, v) = state.at(lane);
+            let turns = Turns::of(v, &step);
             let next = beyond_gap(&body, spans.of(lane).end().0.0, step.phi);
             let (was, is) = (self.beyond[lane] > 0.0, next > 0.0);
             let has_gap = body.gap.0 > 0.0;
@@ -128,12 +124,13 @@ impl<const N: usize> Inside<N> {
     }
 
     /// After the last step.
-    pub fn end(&mut self, table: &Table<N>, spans: &Spans<N>, phi: &[f64; N], v: &[f64; N]) {
+    pub fn end(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &State<N>) {
         for lane in 0..N {
-            let body = OneMass::gather(table, lane);
+            let (body, _) = lanes.lane(lane);
+            let (phi, v) = state.at(lane);
             let (psi, _) = spans.of(lane).end();
             let ledger = &mut self.ledgers[lane];
-            ledger.stored_last = body.stored(psi, Pure(phi[lane]), Pure(v[lane])).0;
+            ledger.stored_last = body.stored(psi, phi, v).0;
             ledger.turnover += ledger.stored_first;
         }
     }

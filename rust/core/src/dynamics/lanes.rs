@@ -11,16 +11,15 @@ use rayon::prelude::*;
 use crate::Error;
 
 use super::control::Control;
-use super::drive::{Drive, Span};
+use super::drive::Drive;
 use super::keep::Keep;
 use super::lane_check::check_lanes;
 use super::lane_drives::LaneDrives;
+use super::march::{Advance, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
 use super::observe::{Places, Samples};
-use super::one_mass::{OneMass, PARAMETERS};
-use super::split::Pace;
+use super::one_mass::OneMass;
 use super::watched::Watched;
-use super::{moreau, split};
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +58,9 @@ const LARGE: usize = 64;
 const MEDIUM: usize = 32;
 /// See [`MEDIUM`].
 const SMALL: usize = 8;
+
+/// Sub-steps between two looks whether to stop, where a sampling interval has many: a tenth of a millisecond.
+pub(super) const LOOK: usize = 512;
 
 /// The block that gives every thread something to do and no lane too many.
 fn block_for(lanes: usize) -> usize {
@@ -257,30 +259,6 @@ fn cut<T>(result: &mut [T], size: usize, count: usize) -> impl Iterator<Item = &
         .take(count)
 }
 
-/// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
-/// code for the instruction set.
-pub(super) trait Advance {
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
-}
-
-pub(super) struct Split<const RICH: bool>;
-
-impl<const RICH: bool> Advance for Split<RICH> {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        split::step::<RICH>(body, span, pace, phi, v)
-    }
-}
-
-pub(super) struct MoreauJean;
-
-impl Advance for MoreauJean {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        moreau::step(body, span, pace, phi, v)
-    }
-}
-
 /// What a block works on.
 pub(super) struct Part<'a> {
     pub bodies: &'a [OneMass<f64>],
@@ -335,53 +313,24 @@ impl<const N: usize> Task<'_, N> {
     #[inline(always)]
     fn along<A: Advance>(self) {
         let (part, drive) = (self.0, self.1);
-        let last = part.bodies.len() - 1;
-        // Lanes beyond the last repeat it, so that every block is full.
-        let mut table = [[0.0; N]; PARAMETERS];
-        let (mut phi, mut v) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let of = lane.min(last);
-            for (row, value) in table.iter_mut().zip(part.bodies[of].to_array()) {
-                row[lane] = value;
-            }
-            phi[lane] = part.starts[of].phi;
-            v[lane] = part.starts[of].speed;
-        }
         let samples = drive.samples();
-        let h = Pure(drive.step_s());
-        let (mut rate, mut kept, mut damped) = ([0.0; N], [0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let pace = Pace::of(&OneMass::gather(&table, lane), h);
-            rate[lane] = pace.rate.0;
-            kept[lane] = pace.kept.0;
-            damped[lane] = pace.damped.0;
-        }
-        let mut seen = Samples::<N>::new(part.places, part.keep, last + 1, samples);
+        let lanes = Lanes::<N>::new(part.bodies, Pure(drive.step_s()));
+        let mut state = State::<N>::new(part.starts);
+        let mut seen = Samples::<N>::new(part.places, part.keep, part.bodies.len(), samples);
         for sample in 0..samples {
-            if part.control.stopped() {
-                return;
-            }
-            seen.take(sample, &phi, &v);
+            seen.take(sample, &state);
             if sample + 1 == samples {
                 break;
             }
             for sub in 0..drive.substeps() {
-                let span = drive.span(sample * drive.substeps() + sub);
-                for lane in 0..N {
-                    let body = OneMass::gather(&table, lane);
-                    let pace = Pace {
-                        h,
-                        rate: Pure(rate[lane]),
-                        kept: Pure(kept[lane]),
-                        damped: Pure(damped[lane]),
-                    };
-                    let next = A::step(&body, &span, pace, Pure(phi[lane]), Pure(v[lane]));
-                    phi[lane] = next.phi.0;
-                    v[lane] = next.speed.0;
+                if sub.is_multiple_of(LOOK) && part.control.stopped() {
+                    return;
                 }
+                let span = drive.span(sample * drive.substeps() + sub);
+                A::advance(&lanes, |_| span, &mut state);
             }
         }
-        seen.finish(&phi, &v, |_, _, _| {});
-        part.control.add(last + 1);
+        seen.finish(&state, |_, _, _| {});
+        part.control.add(part.bodies.len());
     }
 }

@@ -82,6 +82,13 @@ impl Pure {
         self.0.abs() <= limit.0
     }
 
+    /// -1 or 1, by the sign bit: 0 has a side, too.
+    #[inline(always)]
+    #[must_use]
+    pub fn side(self) -> Self {
+        Self(1.0_f64.copysign(self.0))
+    }
+
     /// -1, 0 or 1; 0 of either sign has none.
     #[inline(always)]
     #[must_use]

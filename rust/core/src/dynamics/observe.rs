@@ -1,7 +1,9 @@
 //! What is looked at while a block of lanes runs from sample to sample, and written where it is kept.
 
 use super::keep::{Keep, SUMMARY};
+use super::march::State;
 use super::number::Pure;
+use super::tile::Tile;
 use crate::effects::Lane;
 
 /// Where the results of a block go; what nobody wants is empty.
@@ -19,7 +21,10 @@ pub(super) struct Places<'a> {
 
 /// Sums and extremes over the samples of a block.
 pub(super) struct Samples<'a, const N: usize> {
-    places: Places<'a>,
+    angles: Tile<'a, N>,
+    speeds: Tile<'a, N>,
+    rows: &'a mut [f64],
+    done: &'a mut [bool],
     keep: &'a Keep,
     lanes: usize,
     length: usize,
@@ -34,8 +39,17 @@ pub(super) struct Samples<'a, const N: usize> {
 
 impl<'a, const N: usize> Samples<'a, N> {
     pub fn new(places: Places<'a>, keep: &'a Keep, lanes: usize, length: usize) -> Self {
+        let Places {
+            phi,
+            speed,
+            rows,
+            done,
+        } = places;
         Self {
-            places,
+            angles: Tile::new(phi, lanes, length),
+            speeds: Tile::new(speed, lanes, length),
+            rows,
+            done,
             keep,
             lanes,
             length,
@@ -51,15 +65,11 @@ impl<'a, const N: usize> Samples<'a, N> {
 
     /// Takes in one sample of every lane.
     #[inline(always)]
-    pub fn take(&mut self, sample: usize, phi: &[f64; N], v: &[f64; N]) {
-        for (place, values) in [(&mut self.places.phi, phi), (&mut self.places.speed, v)] {
-            if !place.is_empty() {
-                for lane in 0..self.lanes {
-                    place[lane * self.length + sample] = values[lane];
-                }
-            }
-        }
-        if self.places.rows.is_empty() {
+    pub fn take(&mut self, sample: usize, state: &State<N>) {
+        let State { phi, v } = state;
+        self.angles.take(sample, phi);
+        self.speeds.take(sample, v);
+        if self.rows.is_empty() {
             return;
         }
         for lane in 0..N {
@@ -75,8 +85,8 @@ impl<'a, const N: usize> Samples<'a, N> {
             let at = self.keep.chosen_at(self.length) + self.next_chosen;
             let count = self.keep.chosen.len();
             for lane in 0..self.lanes {
-                self.places.rows[lane * self.width + at] = phi[lane];
-                self.places.rows[lane * self.width + at + count] = v[lane];
+                self.rows[lane * self.width + at] = phi[lane];
+                self.rows[lane * self.width + at + count] = v[lane];
             }
             self.next_chosen += 1;
         }
@@ -101,26 +111,21 @@ impl<'a, const N: usize> Samples<'a, N> {
             let at = self.keep.envelope_at() + sample / window;
             let windows = self.length.div_ceil(window);
             for lane in 0..self.lanes {
-                self.places.rows[lane * self.width + at] = self.least[lane];
-                self.places.rows[lane * self.width + at + windows] = self.greatest[lane];
+                self.rows[lane * self.width + at] = self.least[lane];
+                self.rows[lane * self.width + at + windows] = self.greatest[lane];
             }
         }
     }
 
     /// Writes what stands at the end; `inside` are the counts and energies of every lane, in the order of the rows.
-    pub fn finish(
-        self,
-        phi: &[f64; N],
-        v: &[f64; N],
-        inside: impl Fn(usize, &mut [f64], &mut [f64]),
-    ) {
+    pub fn finish(self, state: &State<N>, inside: impl Fn(usize, &mut [f64], &mut [f64])) {
         let n = self.length as f64;
-        if !self.places.rows.is_empty() {
-            let rows = self.places.rows.chunks_exact_mut(self.width);
+        if !self.rows.is_empty() {
+            let rows = self.rows.chunks_exact_mut(self.width);
             for (lane, row) in rows.enumerate() {
                 row[..SUMMARY.len()].copy_from_slice(&[
-                    phi[lane],
-                    v[lane],
+                    state.phi[lane],
+                    state.v[lane],
                     self.peak[lane],
                     (self.squares[lane] / n).sqrt(),
                     self.rest[lane] / n,
@@ -130,6 +135,6 @@ impl<'a, const N: usize> Samples<'a, N> {
                 inside(lane, &mut head[Keep::events_at()..], energies);
             }
         }
-        self.places.done.fill(true);
+        self.done.fill(true);
     }
 }

@@ -27,17 +27,18 @@ pub(super) struct Step {
     pub speed_turn: Pure,
 }
 
-/// What a lane's step of fixed length needs of its body: divisions that are made once.
+/// What a lane's step of fixed length needs of its body: divisions that are made once. With viscous friction at the
+/// middle speed a step is `v+ = kept v + gain net`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pace {
     /// Seconds of the step.
     pub h: Pure,
     /// Step over inertia.
     pub rate: Pure,
-    /// `1 - k`, k half the share of the speed that viscous friction takes in a step.
+    /// What viscous friction leaves of a speed after a step: `(1 - k) / (1 + k)`, k half the share that it takes.
     pub kept: Pure,
-    /// `1 / (1 + k)`.
-    pub damped: Pure,
+    /// Speed that a torque gives in a step: `rate / (1 + k)`.
+    pub gain: Pure,
 }
 
 impl Pace {
@@ -49,10 +50,67 @@ impl Pace {
         Self {
             h,
             rate,
-            kept: Pure::ONE - k,
-            damped: Pure::ONE / (Pure::ONE + k),
+            kept: (Pure::ONE - k) / (Pure::ONE + k),
+            gain: rate / (Pure::ONE + k),
         }
     }
+}
+
+/// A step in which the speed keeps its sign.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Glide {
+    /// Angle at the end.
+    pub phi: Pure,
+    /// Speed at the end.
+    pub speed: Pure,
+    /// Whether the speed does not keep its sign, or was 0: then the rest of [`step`] decides.
+    pub event: bool,
+}
+
+/// One sub-step under the assumption that the speed keeps its sign; says whether it does.
+#[inline(always)]
+pub(super) fn glide<const RICH: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    phi: Pure,
+    v: Pure,
+) -> Glide {
+    let Pace { h, kept, gain, .. } = pace;
+    let drift = h * Pure(0.5);
+    // At rest the side does not matter: that is an event, and this speed is not used.
+    let side = v.side();
+    let middle = phi + drift * v;
+    let (psi, load) = span.middle();
+    let torque = body.torque::<RICH>(psi, load, middle);
+    let mut speed = v * kept + gain * (torque - body.kinetic::<RICH>(side));
+    if RICH {
+        // What curves with speed: predicted at the speed of the start, then taken at the middle.
+        let guess = speed - gain * body.curved(v, side);
+        speed = speed - gain * body.curved((v + guess) * Pure(0.5), side);
+    }
+    Glide {
+        phi: middle + drift * speed,
+        speed,
+        event: (speed * v).0 <= 0.0,
+    }
+}
+
+/// Whether a body at rest stays there for the whole sub-step. [`step`] then ends at `phi + 0`, at a speed of 0.
+#[inline(always)]
+pub(super) fn stays<const RICH: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    phi: Pure,
+    v: Pure,
+) -> bool {
+    let (psi, load) = span.start();
+    let at_start = body.torque::<RICH>(psi, load, phi);
+    let (psi, load) = span.end();
+    let at_end = body.torque::<RICH>(psi, load, phi);
+    (v.0 == 0.0)
+        & at_start.abs_at_most(body.held::<RICH>(at_start.sign()))
+        & at_end.abs_at_most(body.held::<RICH>(at_end.sign()))
 }
 
 /// One sub-step.
@@ -64,31 +122,30 @@ pub(super) fn step<const RICH: bool>(
     phi: Pure,
     v: Pure,
 ) -> Step {
+    let plain = glide::<RICH>(body, span, pace, phi, v);
+    resolve::<RICH>(body, span, pace, (phi, v), plain)
+}
+
+/// The sub-step that starts at (`phi`, `v`) once it is known where it would end without an event.
+#[inline(always)]
+pub(super) fn resolve<const RICH: bool>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    (phi, v): (Pure, Pure),
+    plain: Glide,
+) -> Step {
     let half = Pure(0.5);
-    let Pace {
-        h,
-        rate,
-        kept,
-        damped,
-    } = pace;
-    let s = v.sign();
-    let phi_middle = phi + h * v * half;
-    let (psi, load) = span.middle();
-    let torque = body.torque::<RICH>(psi, load, phi_middle);
-    let net = torque - body.kinetic::<RICH>(s);
-    let mut v1 = (v * kept + rate * net) * damped;
-    if RICH {
-        // What curves with speed: predicted at the speed of the start, then taken at the middle.
-        let guess = v1 - rate * body.curved(v, s) * damped;
-        v1 = v1 - rate * body.curved((v + guess) * half, s) * damped;
-    }
-    let event = (v1 * v).0 <= 0.0;
+    let h = pace.h;
+    let Glide {
+        speed: v1, event, ..
+    } = plain;
     let rested = v.0 == 0.0;
 
     // The instant at which the speed is 0, and the torque from there on with the body held.
     let fall = (v - v1).when(event & !rested, Pure::ONE);
     let moving = (v / fall).when(!rested, Pure::ZERO);
-    let phi_turn = phi + moving * h * v * half;
+    let phi_turn = phi + moving * (h * half) * v;
     let (psi, load) = span.at(moving);
     let at_turn = body.torque::<RICH>(psi, load, phi_turn);
     let (psi, load) = span.end();
@@ -106,9 +163,10 @@ pub(super) fn step<const RICH: bool>(
     let way = at_turn.when(breaks_now, at_end);
     let direction = way.sign();
     let left = (Pure::ONE - moving) * (Pure::ONE - stuck) * h;
+    let drift = left * half;
     let mean =
         (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic::<RICH>(direction);
-    let slow = left / (body.inertia + left * body.linear(Pure::ONE) * half);
+    let slow = left / (body.inertia + drift * body.linear(Pure::ONE));
     let mut v2 = slow * mean;
     if RICH {
         let guess = v2 - slow * body.curved(Pure::ZERO, direction);
@@ -116,11 +174,10 @@ pub(super) fn step<const RICH: bool>(
     }
     let v2 = Pure::ZERO.when((v2 * way).0 <= 0.0, v2);
 
-    let phi_plain = phi_middle + h * v1 * half;
     Step {
-        phi: (phi_turn + left * v2 * half).when(event, phi_plain),
+        phi: (phi_turn + drift * v2).when(event, plain.phi),
         speed: v2.when(event, v1),
-        phi_turn: phi_turn.when(event, phi_plain),
+        phi_turn: phi_turn.when(event, plain.phi),
         moving: moving.when(event, Pure::ONE),
         stuck: ((Pure::ONE - moving) * stuck).when(event, Pure::ZERO),
         speed_turn: Pure::ZERO.when(event, v1),

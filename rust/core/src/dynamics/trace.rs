@@ -7,9 +7,10 @@ use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lane_check::check_lanes;
 use super::lanes::{Drives, Kernel, Start};
 use super::ledger::Ledger;
+use super::march::{Advance, MoreauJean, Split};
 use super::number::Pure;
 use super::one_mass::OneMass;
-use super::{moreau, split};
+use super::split::Pace;
 
 /// What [`trace`] returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +40,7 @@ pub fn trace(
     let body = body.pure();
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
     let h = drive.step_s();
-    let pace = split::Pace::of(&body, Pure(h));
+    let pace = Pace::of(&body, Pure(h));
     let samples = drive.samples();
     let mut out = Trace {
         phi: Vec::with_capacity(samples),
@@ -61,9 +62,9 @@ pub fn trace(
             let span = drive.span(number);
             let time_s = number as f64 * h;
             let step = match (kernel, rich) {
-                (Kernel::MoreauJean, _) => moreau::step(&body, &span, pace, phi, v),
-                (Kernel::Split, false) => split::step::<false>(&body, &span, pace, phi, v),
-                (Kernel::Split, true) => split::step::<true>(&body, &span, pace, phi, v),
+                (Kernel::MoreauJean, _) => MoreauJean::step(&body, &span, pace, phi, v),
+                (Kernel::Split, false) => Split::<false>::step(&body, &span, pace, phi, v),
+                (Kernel::Split, true) => Split::<true>::step(&body, &span, pace, phi, v),
             };
             friction_events(&mut out.events, time_s, h, v, &step);
             if body.gap.0 > 0.0 {
