@@ -187,12 +187,11 @@ def test_an_interrupt_is_heard_in_the_midst_of_a_lane():
 
 
 def test_steps_too_fine_to_be_refined_beforehand_have_the_same_bits():
-    hand = psi()[:30]
-    given = {k: v[:3] for k, v in lanes(3).items()}
-    # 29 intervals of 100 000 steps: beyond what is refined beforehand.
-    fine = simulate(given, hand, sample_rate_hz=500, substeps=100_000)
-    alone = trace(one(0, given), hand, sample_rate_hz=500, substeps=100_000)
-    assert np.array_equal(fine.roadwheel_rad[0], alone.roadwheel_rad)
+    given = one(0, {k: v for k, v in lanes(1).items() if not k.startswith(("stribeck", "drag"))})
+    # 3 intervals of 800 000 steps: beyond what is refined beforehand.
+    fine = simulate(given, psi()[300:304], sample_rate_hz=500, substeps=800_000)
+    alone = trace(given, psi()[300:304], sample_rate_hz=500, substeps=800_000)
+    assert np.array_equal(fine.roadwheel_rad, alone.roadwheel_rad) and np.ptp(fine.roadwheel_rad) > 0.0
 
 
 def test_an_error_of_the_progress_callback_goes_through():

@@ -183,7 +183,10 @@ def summarise(
     n = given.samples if wanted.trace else 0
     rows, phi, speed = (np.empty((given.lanes, values)) for values in (wanted.width, n, n))
     done = np.zeros(given.lanes, bool)
-    digest = _taken_up(resume, given, wanted, method, rows, phi, speed, done) if resume is not None else ""
+    # Beforehand: an interrupt is not to wait for it.
+    digest = given.digest(wanted.names, wanted.window, wanted.chosen, method)
+    if resume is not None:
+        _take_up(resume, digest, wanted, rows, phi, speed, done)
 
     def result() -> Summary:
         found = np.flatnonzero(done)
@@ -191,7 +194,7 @@ def summarise(
         values = wanted.unpack(rows[whole])
         if wanted.trace:
             values |= {"roadwheel_rad": phi[whole], "speed_rad_s": speed[whole]}
-        return Summary(values, given.lanes, found, digest or _digest(given, wanted, method))
+        return Summary(values, given.lanes, found, digest)
 
     try:
         _run(given, wanted, np.flatnonzero(~done), rows, done, phi, speed, method, width, progress)
@@ -259,22 +262,10 @@ def _run(
         tell(before + part.size)
 
 
-def _digest(given: Inputs, wanted: Keep, method: str) -> str:
-    return given.digest(wanted.names, wanted.window, wanted.chosen, method)
-
-
-def _taken_up(
-    resume: Summary,
-    given: Inputs,
-    wanted: Keep,
-    method: str,
-    rows: np.ndarray,
-    phi: np.ndarray,
-    speed: np.ndarray,
-    done: np.ndarray,
-) -> str:
-    """Write what was done before into the rows and return the digest of the inputs."""
-    digest = _digest(given, wanted, method)
+def _take_up(
+    resume: Summary, digest: str, wanted: Keep, rows: np.ndarray, phi: np.ndarray, speed: np.ndarray, done: np.ndarray
+) -> None:
+    """Write what was done before into the rows of all lanes."""
     if not isinstance(resume, Summary) or resume.inputs != digest:
         remedy = "Give the partial result of a call with the same arguments."
         raise ParameterError("it was not begun like this", "resume", remedy)
@@ -282,4 +273,3 @@ def _taken_up(
     if wanted.trace:
         phi[resume.done], speed[resume.done] = resume["roadwheel_rad"], resume["speed_rad_s"]
     done[resume.done] = True
-    return digest

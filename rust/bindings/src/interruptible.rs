@@ -7,11 +7,11 @@ use std::time::Duration;
 use luztar::dynamics::Control;
 use pyo3::prelude::*;
 
-/// Between two looks: an interrupt is to be answered within 0.2 s, a bar moves smoothly at 20 a second.
-const LOOK: Duration = Duration::from_millis(50);
+/// Between two looks: an interrupt is to be answered within 0.2 s, also where the threads are kept waiting.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs a job that obeys `control` with the interpreter detached. Signals are looked for, and `told` is called with the
-/// lanes done, every 50 ms; if either raises, the job is stopped and waited for before the exception goes on.
+/// lanes done, every 20 ms; if either raises, the job is stopped and waited for before the exception goes on.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     control: &Control,

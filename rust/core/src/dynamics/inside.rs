@@ -3,68 +3,74 @@
 use super::events::{EventKind, Turns, beyond_gap};
 use super::keep::ENERGIES;
 use super::lane_drives::Spans;
-use super::ledger::Ledger;
-use super::march::{Advance, Lanes, State};
+use super::ledger::{ENTRIES, Ledger, entry};
+use super::march::{Advance, GROUP, Lanes, State};
 use super::number::Pure;
 use super::split::Step;
 
-/// One step of every lane.
-struct Steps<const N: usize> {
-    rows: [[f64; N]; 6],
+/// One step of a group of lanes.
+struct Steps {
+    rows: [[f64; GROUP]; 6],
 }
 
-impl<const N: usize> Steps<N> {
-    pub fn new() -> Self {
+impl Steps {
+    #[inline(always)]
+    fn new() -> Self {
         Self {
-            rows: [[0.0; N]; 6],
+            rows: [[0.0; GROUP]; 6],
         }
     }
 
     #[inline(always)]
-    pub fn put(&mut self, lane: usize, step: &Step) {
-        let values = [
-            step.phi,
-            step.speed,
-            step.phi_turn,
-            step.moving,
-            step.stuck,
-            step.speed_turn,
-        ];
-        for (row, value) in self.rows.iter_mut().zip(values) {
-            row[lane] = value.0;
-        }
+    fn put(&mut self, lane: usize, step: &Step) {
+        self.rows[0][lane] = step.phi.0;
+        self.rows[1][lane] = step.speed.0;
+        self.rows[2][lane] = step.phi_turn.0;
+        self.rows[3][lane] = step.moving.0;
+        self.rows[4][lane] = step.stuck.0;
+        self.rows[5][lane] = step.speed_turn.0;
     }
 
     #[inline(always)]
     fn get(&self, lane: usize) -> Step {
-        let [phi, speed, phi_turn, moving, stuck, speed_turn] =
-            self.rows.each_ref().map(|row| Pure(row[lane]));
         Step {
-            phi,
-            speed,
-            phi_turn,
-            moving,
-            stuck,
-            speed_turn,
+            phi: Pure(self.rows[0][lane]),
+            speed: Pure(self.rows[1][lane]),
+            phi_turn: Pure(self.rows[2][lane]),
+            moving: Pure(self.rows[3][lane]),
+            stuck: Pure(self.rows[4][lane]),
+            speed_turn: Pure(self.rows[5][lane]),
         }
     }
 }
 
 /// Events and energies of every lane.
 pub(super) struct Inside<const N: usize> {
-    steps: Steps<N>,
     counts: [[f64; N]; EventKind::ALL.len()],
     beyond: [f64; N],
-    ledgers: [Ledger; N],
+    booked: Booked,
+    entries: [[f64; N]; ENTRIES],
+    first: [f64; N],
+    last: [f64; N],
+}
+
+/// Whether energies are booked, and whether more than linear springs and symmetric friction is at work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Booked {
+    Nothing,
+    Plain,
+    Rich,
 }
 
 impl<const N: usize> Inside<N> {
-    pub fn new() -> Self {
+    pub fn new(booked: Booked) -> Self {
         Self {
-            steps: Steps::new(),
             counts: [[0.0; N]; EventKind::ALL.len()],
             beyond: [0.0; N],
-            ledgers: [Ledger::default(); N],
+            booked,
+            entries: [[0.0; N]; ENTRIES],
+            first: [0.0; N],
+            last: [0.0; N],
         }
     }
 
@@ -74,7 +80,7 @@ impl<const N: usize> Inside<N> {
             let (body, _) = lanes.lane(lane);
             let (phi, v) = state.at(lane);
             let (psi, _) = spans.of(lane).start();
-            self.ledgers[lane].stored_first = body.stored(psi, phi, v).0;
+            self.first[lane] = body.stored(psi, phi, v).0;
             self.beyond[lane] = beyond_gap(&body, psi.0, phi);
         }
     }
@@ -82,43 +88,86 @@ impl<const N: usize> Inside<N> {
     /// Takes every lane one sub-step further and looks at what happened.
     #[inline(always)]
     pub fn step<A: Advance>(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &mut State<N>) {
-        // One loop for each job: together they are too much for the registers.
-        for lane in 0..N {
-            let (body, pace) = lanes.lane(lane);
-            let (phi, v) = state.at(lane);
-            let step = A::step(&body, &spans.of(lane), pace, phi, v);
-            self.steps.put(lane, &step);
+        for first in (0..N).step_by(GROUP) {
+            // A loop for each job, over local rows: that is what becomes vector instructions.
+            let mut steps = Steps::new();
+            for i in 0..GROUP {
+                let (body, pace) = lanes.lane(first + i);
+                let (phi, v) = state.at(first + i);
+                steps.put(i, &A::step(&body, &spans.of(first + i), pace, phi, v));
+            }
+            self.count(first, lanes, spans, state, &steps);
+            match self.booked {
+                Booked::Nothing => {}
+                Booked::Plain => self.book::<false>(first, lanes, spans, state, &steps),
+                Booked::Rich => self.book::<true>(first, lanes, spans, state, &steps),
+            }
+            state.phi[first..first + GROUP].copy_from_slice(&steps.rows[0]);
+            state.v[first..first + GROUP].copy_from_slice(&steps.rows[1]);
         }
-        self.count(lanes, spans, state);
-        for lane in 0..N {
-            let (body, pace) = lanes.lane(lane);
-            let span = spans.of(lane);
-            let drives = (span.start(), span.end());
-            let step = self.steps.get(lane);
-            self.ledgers[lane].book(&body, pace.h.0, state.at(lane), &step, drives);
-        }
-        (state.phi, state.v) = (self.steps.rows[0], self.steps.rows[1]);
     }
 
     #[inline(always)]
-    fn count(&mut self, lanes: &Lanes<N>, spans: &Spans<N>, state: &State<N>) {
-        for lane in 0..N {
-            let (body, _) = lanes.lane(lane);
-            let step = self.steps.get(lane);
-            let (_, v) = state.at(lane);
+    fn book<const RICH: bool>(
+        &mut self,
+        first: usize,
+        lanes: &Lanes<N>,
+        spans: &Spans<N>,
+        state: &State<N>,
+        steps: &Steps,
+    ) {
+        let mut entries = [[0.0; GROUP]; ENTRIES];
+        for i in 0..GROUP {
+            let (body, pace) = lanes.lane(first + i);
+            let span = spans.of(first + i);
+            let drives = (span.start(), span.end());
+            let from = state.at(first + i);
+            let booked = entry::<RICH>(&body, pace.h.0, from, &steps.get(i), drives);
+            for k in 0..ENTRIES {
+                entries[k][i] = booked[k];
+            }
+        }
+        for (sums, row) in self.entries.iter_mut().zip(&entries) {
+            for i in 0..GROUP {
+                sums[first + i] += row[i];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn count(
+        &mut self,
+        first: usize,
+        lanes: &Lanes<N>,
+        spans: &Spans<N>,
+        state: &State<N>,
+        steps: &Steps,
+    ) {
+        let mut counted = [[0.0; GROUP]; EventKind::ALL.len()];
+        let mut beyond = [0.0; GROUP];
+        for i in 0..GROUP {
+            let (body, _) = lanes.lane(first + i);
+            let step = steps.get(i);
+            let (_, v) = state.at(first + i);
             let turns = Turns::of(v, &step);
-            let next = beyond_gap(&body, spans.of(lane).end().0.0, step.phi);
-            let (was, is) = (self.beyond[lane] > 0.0, next > 0.0);
+            let next = beyond_gap(&body, spans.of(first + i).end().0.0, step.phi);
+            let (was, is) = (self.beyond[first + i] > 0.0, next > 0.0);
             let has_gap = body.gap.0 > 0.0;
-            self.beyond[lane] = next;
-            for (row, happened) in self.counts.iter_mut().zip([
+            beyond[i] = next;
+            for (row, happened) in counted.iter_mut().zip([
                 turns.stick,
                 turns.slip,
                 turns.reversal,
                 has_gap & !was & is,
                 has_gap & was & !is,
             ]) {
-                row[lane] += Pure::ONE.when(happened, Pure::ZERO).0;
+                row[i] = Pure::ONE.when(happened, Pure::ZERO).0;
+            }
+        }
+        self.beyond[first..first + GROUP].copy_from_slice(&beyond);
+        for (sums, row) in self.counts.iter_mut().zip(&counted) {
+            for i in 0..GROUP {
+                sums[first + i] += row[i];
             }
         }
     }
@@ -129,9 +178,7 @@ impl<const N: usize> Inside<N> {
             let (body, _) = lanes.lane(lane);
             let (phi, v) = state.at(lane);
             let (psi, _) = spans.of(lane).end();
-            let ledger = &mut self.ledgers[lane];
-            ledger.stored_last = body.stored(psi, phi, v).0;
-            ledger.turnover += ledger.stored_first;
+            self.last[lane] = body.stored(psi, phi, v).0;
         }
     }
 
@@ -141,7 +188,14 @@ impl<const N: usize> Inside<N> {
             *place = row[lane];
         }
         if energies.len() == ENERGIES.len() {
-            energies.copy_from_slice(&self.ledgers[lane].to_array());
+            let mut ledger = Ledger {
+                stored_first: self.first[lane],
+                stored_last: self.last[lane],
+                ..Ledger::default()
+            };
+            ledger.book(&self.entries.each_ref().map(|row| row[lane]));
+            ledger.turnover += ledger.stored_first;
+            energies.copy_from_slice(&ledger.to_array());
         }
     }
 }

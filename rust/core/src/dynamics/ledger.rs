@@ -53,60 +53,94 @@ impl Ledger {
         ]
     }
 
-    /// Books one sub-step of length `h` from (`phi`, `v`), driven from `first` to `last` (handwheel, load).
-    pub(super) fn book(
-        &mut self,
-        body: &OneMass<Pure>,
-        h: f64,
-        (phi, v): (Pure, Pure),
-        step: &Step,
-        (first, last): ((Pure, Pure), (Pure, Pure)),
-    ) {
-        let mean = |a: Pure, b: Pure| 0.5 * (a.0 + b.0);
-        let turned = body.at_handwheel::<true>(first.0, phi);
-        let turned_last = body.at_handwheel::<true>(last.0, step.phi);
-        let input = mean(turned, turned_last) * (last.0.0 - first.0.0);
-        let loaded = mean(first.1, last.1) * (step.phi.0 - phi.0);
-        // Until the speed is 0, and from the break-away on.
-        let before = part(
-            body,
-            step.moving.0 * h,
-            v,
-            step.speed_turn,
-            step.phi_turn.0 - phi.0,
-        );
-        let left = (1.0 - step.moving.0 - step.stuck.0) * h;
-        let after = part(
-            body,
-            left,
-            Pure::ZERO,
-            step.speed,
-            step.phi.0 - step.phi_turn.0,
-        );
-        self.handwheel += input;
-        self.load += loaded;
-        self.dry += before[0] + after[0];
-        self.viscous += before[1] + after[1];
-        self.curved += before[2] + after[2];
-        self.turnover += input.abs() + loaded.abs();
+    /// Books one sub-step.
+    pub(super) fn book(&mut self, entry: &[f64; ENTRIES]) {
+        let [handwheel, load, dry, viscous, curved, turnover] = entry;
+        self.handwheel += handwheel;
+        self.load += load;
+        self.dry += dry;
+        self.viscous += viscous;
+        self.curved += curved;
+        self.turnover += turnover;
     }
 }
 
+/// What is booked of a sub-step: work of handwheel and load, dry, viscous and curved heat, turnover.
+pub(super) const ENTRIES: usize = 6;
+
+/// The entry of one sub-step of length `h` from (`phi`, `v`), driven from `first` to `last` (handwheel, load). Without
+/// branches, for the loop over lanes; a body that is not rich has the same entry either way.
+#[inline(always)]
+pub(super) fn entry<const RICH: bool>(
+    body: &OneMass<Pure>,
+    h: f64,
+    (phi, v): (Pure, Pure),
+    step: &Step,
+    (first, last): ((Pure, Pure), (Pure, Pure)),
+) -> [f64; ENTRIES] {
+    let turned = body.at_handwheel::<RICH>(first.0, phi);
+    let turned_last = body.at_handwheel::<RICH>(last.0, step.phi);
+    let input = 0.5 * (turned.0 + turned_last.0) * (last.0.0 - first.0.0);
+    let loaded = 0.5 * (first.1.0 + last.1.0) * (step.phi.0 - phi.0);
+    // Until the speed is 0, and from the break-away on.
+    let before = part::<RICH>(
+        body,
+        step.moving.0 * h,
+        v,
+        step.speed_turn,
+        step.phi_turn.0 - phi.0,
+    );
+    let left = (1.0 - step.moving.0 - step.stuck.0) * h;
+    let after = part::<RICH>(
+        body,
+        left,
+        Pure::ZERO,
+        step.speed,
+        step.phi.0 - step.phi_turn.0,
+    );
+    [
+        input,
+        loaded,
+        before[0] + after[0],
+        before[1] + after[1],
+        before[2] + after[2],
+        input.abs() + loaded.abs(),
+    ]
+}
+
 /// Heat of dry, viscous and curved friction over a stretch in which the speed goes evenly from one value to another.
-fn part(body: &OneMass<Pure>, seconds: f64, from: Pure, to: Pure, way: f64) -> [f64; 3] {
-    if seconds <= 0.0 {
-        return [0.0; 3];
-    }
+#[inline(always)]
+fn part<const RICH: bool>(
+    body: &OneMass<Pure>,
+    seconds: f64,
+    from: Pure,
+    to: Pure,
+    way: f64,
+) -> [f64; 3] {
+    // Written out: what a closure of `map` computes is not compiled for the loop's instruction set.
     let direction = Pure(way).sign();
     let middle = Pure(0.5 * (from.0 + to.0));
     // Simpson's rule: exact for the viscous part, whose power is a parabola.
-    let along = |power: &dyn Fn(Pure) -> f64| {
-        seconds * (power(from) + 4.0 * power(middle) + power(to)) / 6.0
-    };
-    let extra = |v: Pure| body.stribeck_torque(v, direction).0 * v.0;
-    [
-        body.kinetic::<true>(direction).0 * way + along(&extra),
-        along(&|v| body.linear(v).0 * v.0),
-        along(&|v| (body.curved(v, direction).0 - body.stribeck_torque(v, direction).0) * v.0),
-    ]
+    let third = seconds / 6.0;
+    let viscous = third
+        * (body.linear(from).0 * from.0
+            + 4.0 * (body.linear(middle).0 * middle.0)
+            + body.linear(to).0 * to.0);
+    let dry = body.kinetic::<RICH>(direction).0 * way;
+    if !RICH {
+        return [dry, viscous, 0.0];
+    }
+    let (a, b, c) = (
+        body.stribeck_torque(from, direction).0,
+        body.stribeck_torque(middle, direction).0,
+        body.stribeck_torque(to, direction).0,
+    );
+    let extra = third * (a * from.0 + 4.0 * (b * middle.0) + c * to.0);
+    let (a, b, c) = (
+        body.curved(from, direction).0 - a,
+        body.curved(middle, direction).0 - b,
+        body.curved(to, direction).0 - c,
+    );
+    let curved = third * (a * from.0 + 4.0 * (b * middle.0) + c * to.0);
+    [dry + extra, viscous, curved]
 }

@@ -6,7 +6,7 @@ use super::drive::Drive;
 use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lane_check::check_lanes;
 use super::lanes::{Drives, Kernel, Start};
-use super::ledger::Ledger;
+use super::ledger::{Ledger, entry};
 use super::march::{Advance, MoreauJean, Split};
 use super::number::Pure;
 use super::one_mass::OneMass;
@@ -75,7 +75,12 @@ pub fn trace(
                 gap = next;
             }
             let drives = (span.start(), span.end());
-            out.ledger.book(&body, h, (phi, v), &step, drives);
+            let booked = if rich {
+                entry::<true>(&body, h, (phi, v), &step, drives)
+            } else {
+                entry::<false>(&body, h, (phi, v), &step, drives)
+            };
+            out.ledger.book(&booked);
             (phi, v) = (step.phi, step.speed);
         }
     }

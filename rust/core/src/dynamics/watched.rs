@@ -3,7 +3,7 @@
 use pulp::WithSimd;
 
 use super::drive::Drive;
-use super::inside::Inside;
+use super::inside::{Booked, Inside};
 use super::lane_drives::{BlockDrives, Spans};
 use super::lanes::{Drives, Kernel, LOOK, Part};
 use super::march::{Advance, Lanes, MoreauJean, Split, State};
@@ -58,7 +58,11 @@ impl<const INSIDE: bool, const N: usize> Watched<'_, INSIDE, N> {
         let lanes = Lanes::<N>::new(part.bodies, Pure(part.drives.step_s()));
         let mut state = State::<N>::new(part.starts);
         let mut spans = Spans::<N>::new();
-        let mut inside = Inside::<N>::new();
+        let mut inside = Inside::<N>::new(match (part.keep.energy, part.rich) {
+            (false, _) => Booked::Nothing,
+            (true, false) => Booked::Plain,
+            (true, true) => Booked::Rich,
+        });
         let mut seen = Samples::<N>::new(part.places, part.keep, part.bodies.len(), samples);
         for sample in 0..samples {
             seen.take(sample, &state);
