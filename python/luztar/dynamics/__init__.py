@@ -7,9 +7,14 @@ chatters.
 
 from .batch import simulate as simulate
 from .batch import summarise as summarise
+from .distributions import Choice as Choice
+from .distributions import LogNormal as LogNormal
+from .distributions import Normal as Normal
+from .distributions import Uniform as Uniform
 from .keep import REDUCERS as REDUCERS
 from .lanes import COLUMNS as COLUMNS
 from .lanes import METHODS as METHODS
+from .sample import sample as sample
 from .summary import Summary as Summary
 from .trace import trace as trace
 from .trajectory import Event as Event
