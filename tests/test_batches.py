@@ -47,10 +47,30 @@ def digest(index: np.ndarray | None = None, **options: object) -> str:
     return out.hexdigest()
 
 
-@pytest.mark.parametrize("method", ["split", "moreau_jean"])
-def test_events_and_energies_of_a_lane_are_those_of_its_trace(method):
+FURTHER = {
+    "end_stop.stiffness_nm_per_rad": 500.0,
+    "end_stop.limit_rad": 0.04,
+    "dwell.extra_nm": 2.0,
+    "dwell.time_s": 0.2,
+    "once_per_rev.amplitude_nm": 1.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("method", "further"),
+    [
+        ("split", {}),
+        ("split", FURTHER),
+        ("split", {**FURTHER, "presliding.breakaway_rad": 0.02}),
+        ("moreau_jean", FURTHER),
+    ],
+)
+def test_events_and_energies_of_a_lane_are_those_of_its_trace(method, further):
     hand, load = own_drives()
-    given = lanes(LANES)
+    # Every second lane has what is further given: neighbours take another way through the step.
+    given = lanes(LANES) | {k: np.where(np.arange(LANES) % 2, v, 0.0) for k, v in further.items()}
+    if "dwell.time_s" in further:
+        given["dwell.time_s"] = np.full(LANES, further["dwell.time_s"])
     many = summarise(given, hand, load_nm=load, method=method, **OPTIONS)
     for lane in range(0, LANES, 3):
         alone = trace(one(lane, given), hand[lane], load_nm=load[lane], method=method, **RATE)

@@ -460,6 +460,7 @@ def check_lanes(
     *,
     sample_rate_hz: float,
     substeps: int,
+    method: str,
 ) -> None: ...
 def run_lanes(
     parameters: NDArray[np.float64],
@@ -490,7 +491,13 @@ def trace_steering(
     sample_rate_hz: float,
     substeps: int,
     method: str,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[float, str, float]], list[tuple[str, float]]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    list[tuple[float, str, float]],
+    list[tuple[str, float]],
+]: ...
 
 # projections
 

@@ -219,7 +219,7 @@ def _run(
     """Run the lanes of an index, writing into the rows of all lanes; ``done`` is right also after an interrupt."""
     lanes.check_method(method)
     chunk = given.chunk(rows.shape[1] + (2 * given.samples if wanted.trace else 0))
-    given.check(chunk)
+    given.check(chunk, method)
     told = 0
 
     def tell(count: int) -> None:

@@ -61,7 +61,7 @@ class Inputs:
         each = 8 * (len(_core.steering_parameters()) + own + row_values)
         return int(np.clip(CHUNK_BYTES // each // LEAST_LANES * LEAST_LANES, LEAST_LANES, MOST_LANES))
 
-    def check(self, chunk: int) -> None:
+    def check(self, chunk: int, method: str) -> None:
         """Refuse a lane that makes no sense before any of them runs; what functions return is looked at when asked."""
         for first in range(0, self.lanes, chunk):
             index = np.arange(first, min(first + chunk, self.lanes))
@@ -75,6 +75,7 @@ class Inputs:
                 load,
                 sample_rate_hz=self.rate_hz,
                 substeps=self.substeps,
+                method=method,
             )
 
     def digest(self, *more: object) -> str:

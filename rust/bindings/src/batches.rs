@@ -79,7 +79,7 @@ pub fn lane_columns(
 
 /// Refuses what [`run_lanes`] would refuse, without running.
 #[pyfunction]
-#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps))]
+#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method))]
 pub fn check_lanes(
     parameters: PyReadonlyArray2<'_, f64>,
     starts: PyReadonlyArray2<'_, f64>,
@@ -87,6 +87,7 @@ pub fn check_lanes(
     load_nm: Option<PyReadonlyArray2<'_, f64>>,
     sample_rate_hz: f64,
     substeps: usize,
+    method: &str,
 ) -> PyResult<()> {
     let bodies = bodies(&parameters)?;
     let starts = self::starts(&starts)?;
@@ -97,7 +98,7 @@ pub fn check_lanes(
         sample_rate_hz,
         substeps,
     )?;
-    Ok(check(&bodies, &starts, driven.drives()).map_err(CoreError)?)
+    Ok(check(&bodies, &starts, driven.drives(), kernel(method)?).map_err(CoreError)?)
 }
 
 /// `rows` (lanes, values), `done` (lanes), `phi` and `speed` (lanes, samples), written; `told` is called with the lanes

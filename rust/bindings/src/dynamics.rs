@@ -11,8 +11,9 @@ use pyo3::prelude::*;
 
 use crate::error::CoreError;
 
-/// Angle, speed, events, energies.
+/// Angle, speed, friction, events, energies.
 type TraceParts<'py> = (
+    Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Vec<(f64, &'static str, f64)>,
@@ -67,7 +68,7 @@ pub fn simulate_steering(
     Ok(())
 }
 
-/// One trajectory: (phi, speed, events as (time, kind, direction), energies by name).
+/// One trajectory: (phi, speed, friction, events as (time, kind, direction), energies by name).
 #[pyfunction]
 #[pyo3(signature = (parameters, start, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method))]
 #[allow(clippy::too_many_arguments)]
@@ -124,6 +125,7 @@ pub fn trace_steering<'py>(
     Ok((
         made.phi.into_pyarray(py),
         made.speed.into_pyarray(py),
+        made.friction.into_pyarray(py),
         events,
         energies,
     ))

@@ -6,18 +6,19 @@ use super::lane_drives::Spans;
 use super::ledger::{ENTRIES, Ledger, entry};
 use super::march::{Advance, GROUP, Lanes, State};
 use super::number::Pure;
-use super::split::Step;
+use super::one_mass::{CURVED, EVERY, PLAIN};
+use super::split::{Carried, Step};
 
 /// One step of a group of lanes.
 struct Steps {
-    rows: [[f64; GROUP]; 6],
+    rows: [[f64; GROUP]; 9],
 }
 
 impl Steps {
     #[inline(always)]
     fn new() -> Self {
         Self {
-            rows: [[0.0; GROUP]; 6],
+            rows: [[0.0; GROUP]; 9],
         }
     }
 
@@ -29,6 +30,9 @@ impl Steps {
         self.rows[3][lane] = step.moving.0;
         self.rows[4][lane] = step.stuck.0;
         self.rows[5][lane] = step.speed_turn.0;
+        self.rows[6][lane] = step.grip.0;
+        self.rows[7][lane] = step.carried.rest_s.0;
+        self.rows[8][lane] = step.carried.bristle.0;
     }
 
     #[inline(always)]
@@ -40,6 +44,11 @@ impl Steps {
             moving: Pure(self.rows[3][lane]),
             stuck: Pure(self.rows[4][lane]),
             speed_turn: Pure(self.rows[5][lane]),
+            grip: Pure(self.rows[6][lane]),
+            carried: Carried {
+                rest_s: Pure(self.rows[7][lane]),
+                bristle: Pure(self.rows[8][lane]),
+            },
         }
     }
 }
@@ -48,22 +57,15 @@ impl Steps {
 pub(super) struct Inside<const N: usize> {
     counts: [[f64; N]; EventKind::ALL.len()],
     beyond: [f64; N],
-    booked: Booked,
+    booked: Option<usize>,
     entries: [[f64; N]; ENTRIES],
     first: [f64; N],
     last: [f64; N],
 }
 
-/// Whether energies are booked, and whether more than linear springs and symmetric friction is at work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Booked {
-    Nothing,
-    Plain,
-    Rich,
-}
-
 impl<const N: usize> Inside<N> {
-    pub fn new(booked: Booked) -> Self {
+    /// With the effects at work where energies are booked.
+    pub fn new(booked: Option<usize>) -> Self {
         Self {
             counts: [[0.0; N]; EventKind::ALL.len()],
             beyond: [0.0; N],
@@ -93,22 +95,28 @@ impl<const N: usize> Inside<N> {
             let mut steps = Steps::new();
             for i in 0..GROUP {
                 let (body, pace) = lanes.lane(first + i);
-                let (phi, v) = state.at(first + i);
-                steps.put(i, &A::step(&body, &spans.of(first + i), pace, phi, v));
+                let (from, carried) = (state.at(first + i), state.carried(first + i));
+                steps.put(
+                    i,
+                    &A::step(&body, &spans.of(first + i), pace, from, carried),
+                );
             }
             self.count(first, lanes, spans, state, &steps);
             match self.booked {
-                Booked::Nothing => {}
-                Booked::Plain => self.book::<false>(first, lanes, spans, state, &steps),
-                Booked::Rich => self.book::<true>(first, lanes, spans, state, &steps),
+                None => {}
+                Some(PLAIN) => self.book::<PLAIN>(first, lanes, spans, state, &steps),
+                Some(CURVED) => self.book::<CURVED>(first, lanes, spans, state, &steps),
+                Some(_) => self.book::<EVERY>(first, lanes, spans, state, &steps),
             }
             state.phi[first..first + GROUP].copy_from_slice(&steps.rows[0]);
             state.v[first..first + GROUP].copy_from_slice(&steps.rows[1]);
+            state.rest_s[first..first + GROUP].copy_from_slice(&steps.rows[7]);
+            state.bristle[first..first + GROUP].copy_from_slice(&steps.rows[8]);
         }
     }
 
     #[inline(always)]
-    fn book<const RICH: bool>(
+    fn book<const WITH: usize>(
         &mut self,
         first: usize,
         lanes: &Lanes<N>,
@@ -122,7 +130,7 @@ impl<const N: usize> Inside<N> {
             let span = spans.of(first + i);
             let drives = (span.start(), span.end());
             let from = state.at(first + i);
-            let booked = entry::<RICH>(&body, pace.h.0, from, &steps.get(i), drives);
+            let booked = entry::<WITH>(&body, pace.h.0, from, &steps.get(i), drives);
             for k in 0..ENTRIES {
                 entries[k][i] = booked[k];
             }

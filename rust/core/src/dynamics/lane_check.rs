@@ -2,7 +2,7 @@
 
 use crate::Error;
 
-use super::lanes::{Drives, Start};
+use super::lanes::{Drives, Kernel, Start};
 use super::one_mass::OneMass;
 
 /// Refuses what a batch of these lanes would refuse.
@@ -14,6 +14,7 @@ pub fn check_lanes(
     bodies: &[OneMass<f64>],
     starts: &[Start],
     drives: Drives<'_>,
+    kernel: Kernel,
 ) -> Result<(), Error> {
     let lanes = bodies.len();
     if lanes == 0 || starts.len() != lanes {
@@ -37,6 +38,13 @@ pub fn check_lanes(
                 });
             }
         }
+        if kernel == Kernel::MoreauJean && body.bristle.acts() {
+            return Err(Error::OutOfRange {
+                name: "presliding_breakaway_rad",
+                value: 1.0 / body.bristle.per_travel,
+                interval: "{0} with moreau_jean, whose contact is rigid: take split".to_owned(),
+            });
+        }
         let reach = match drives {
             Drives::Shared(_) => shared,
             // Only a hardening spring is stiffer the further it is wound up.
@@ -58,11 +66,7 @@ fn check_step(body: &OneMass<f64>, step_s: f64, wound_rad: f64, lane: usize) -> 
     if step_s < longest {
         return Ok(());
     }
-    let spring = if body.ratio * body.ratio * body.stiffness >= body.aligning {
-        "stiffness_nm_per_rad"
-    } else {
-        "aligning_nm_per_rad"
-    };
+    let spring = body.stiffest_spring(wound_rad);
     let where_it_is = if lane > 0 {
         format!(" of lane {lane}")
     } else {

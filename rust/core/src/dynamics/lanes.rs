@@ -15,10 +15,10 @@ use super::drive::Drive;
 use super::keep::Keep;
 use super::lane_check::check_lanes;
 use super::lane_drives::LaneDrives;
-use super::march::{Advance, Lanes, MoreauJean, Split, State};
+use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
 use super::observe::{Places, Samples};
-use super::one_mass::OneMass;
+use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
 use super::watched::Watched;
 
 /// How a step is made.
@@ -191,12 +191,17 @@ pub fn run_lanes(
             length(name, got, lanes * each)?;
         }
     }
-    check_lanes(batch.bodies, batch.starts, drives)?;
+    check_lanes(batch.bodies, batch.starts, drives, batch.kernel)?;
     let watched = keep.watches_steps() || matches!(drives, Drives::Own(_));
     // What is looked at inside of the steps costs more than small blocks do.
     let block = if watched { MEDIUM } else { block_for(lanes) };
     let count = lanes.div_ceil(block);
-    let rich = batch.bodies.iter().any(OneMass::is_rich);
+    let effects = batch
+        .bodies
+        .iter()
+        .map(OneMass::effects)
+        .max()
+        .unwrap_or(PLAIN);
     let places = cut(phi, block * samples, count)
         .zip(cut(speed, block * samples, count))
         .zip(cut(rows, block * keep.width(samples), count))
@@ -212,7 +217,7 @@ pub fn run_lanes(
                 first,
                 drives,
                 kernel: batch.kernel,
-                rich,
+                effects,
                 keep,
                 control,
                 places: Places {
@@ -267,7 +272,7 @@ pub(super) struct Part<'a> {
     pub first: usize,
     pub drives: Drives<'a>,
     pub kernel: Kernel,
-    pub rich: bool,
+    pub effects: usize,
     pub keep: &'a Keep,
     pub control: &'a Control,
     pub places: Places<'a>,
@@ -301,10 +306,12 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.rich) {
-            (Kernel::Split, false) => self.along::<Split<false>>(),
-            (Kernel::Split, true) => self.along::<Split<true>>(),
+        match (self.0.kernel, self.0.effects) {
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
+            (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
+            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
+            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
+            (Kernel::Split, _) => self.along::<Elastic>(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::keep::ENERGIES;
 use super::number::Pure;
-use super::one_mass::OneMass;
+use super::one_mass::{CURVED, OneMass};
 use super::split::Step;
 
 /// Energies of a trajectory, J.
@@ -16,7 +16,7 @@ pub struct Ledger {
     pub stored_first: f64,
     /// The same at the end.
     pub stored_last: f64,
-    /// Turned into heat by dry friction, Stribeck's part included.
+    /// Turned into heat by dry friction, Stribeck's part included; on an elastic contact with what the contact holds.
     pub dry: f64,
     /// By viscous friction.
     pub viscous: f64,
@@ -69,39 +69,42 @@ impl Ledger {
 pub(super) const ENTRIES: usize = 6;
 
 /// The entry of one sub-step of length `h` from (`phi`, `v`), driven from `first` to `last` (handwheel, load). Without
-/// branches, for the loop over lanes; a body that is not rich has the same entry either way.
+/// branches, for the loop over lanes; effects that do not act change no bit of it.
 #[inline(always)]
-pub(super) fn entry<const RICH: bool>(
+pub(super) fn entry<const WITH: usize>(
     body: &OneMass<Pure>,
     h: f64,
     (phi, v): (Pure, Pure),
     step: &Step,
     (first, last): ((Pure, Pure), (Pure, Pure)),
 ) -> [f64; ENTRIES] {
-    let turned = body.at_handwheel::<RICH>(first.0, phi);
-    let turned_last = body.at_handwheel::<RICH>(last.0, step.phi);
+    let turned = body.at_handwheel::<WITH>(first.0, phi);
+    let turned_last = body.at_handwheel::<WITH>(last.0, step.phi);
     let input = 0.5 * (turned.0 + turned_last.0) * (last.0.0 - first.0.0);
-    let loaded = 0.5 * (first.1.0 + last.1.0) * (step.phi.0 - phi.0);
+    let load = Pure(0.5 * (first.1.0 + last.1.0));
+    let loaded = load.0 * (step.phi.0 - phi.0);
     // Until the speed is 0, and from the break-away on.
-    let before = part::<RICH>(
+    let before = part::<WITH>(
         body,
         step.moving.0 * h,
-        v,
-        step.speed_turn,
-        step.phi_turn.0 - phi.0,
+        (v, step.speed_turn),
+        (phi, step.phi_turn),
+        load,
     );
     let left = (1.0 - step.moving.0 - step.stuck.0) * h;
-    let after = part::<RICH>(
+    let after = part::<WITH>(
         body,
         left,
-        Pure::ZERO,
-        step.speed,
-        step.phi.0 - step.phi_turn.0,
+        (Pure::ZERO, step.speed),
+        (step.phi_turn, step.phi),
+        load,
     );
+    let rigid = Pure(before[0] + after[0]);
+    let elastic = step.grip * (step.phi - phi);
     [
         input,
         loaded,
-        before[0] + after[0],
+        rigid.when(body.bristle.per_travel.0 == 0.0, elastic).0,
         before[1] + after[1],
         before[2] + after[2],
         input.abs() + loaded.abs(),
@@ -110,24 +113,26 @@ pub(super) fn entry<const RICH: bool>(
 
 /// Heat of dry, viscous and curved friction over a stretch in which the speed goes evenly from one value to another.
 #[inline(always)]
-fn part<const RICH: bool>(
+fn part<const WITH: usize>(
     body: &OneMass<Pure>,
     seconds: f64,
-    from: Pure,
-    to: Pure,
-    way: f64,
+    (from, to): (Pure, Pure),
+    (first, last): (Pure, Pure),
+    load: Pure,
 ) -> [f64; 3] {
     // Written out: what a closure of `map` computes is not compiled for the loop's instruction set.
+    let way = last.0 - first.0;
     let direction = Pure(way).sign();
     let middle = Pure(0.5 * (from.0 + to.0));
+    let place = Pure(0.5 * (first.0 + last.0));
     // Simpson's rule: exact for the viscous part, whose power is a parabola.
     let third = seconds / 6.0;
     let viscous = third
         * (body.linear(from).0 * from.0
             + 4.0 * (body.linear(middle).0 * middle.0)
             + body.linear(to).0 * to.0);
-    let dry = body.kinetic::<RICH>(direction).0 * way;
-    if !RICH {
+    let dry = body.kinetic::<WITH>(direction, place, load).0 * way;
+    if WITH < CURVED {
         return [dry, viscous, 0.0];
     }
     let (a, b, c) = (

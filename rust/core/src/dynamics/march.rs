@@ -8,9 +8,10 @@
 use super::drive::Span;
 use super::lanes::Start;
 use super::number::Pure;
-use super::one_mass::{OneMass, PARAMETERS};
-use super::split::{Glide, Pace, Step};
-use super::{moreau, split};
+use super::one_mass::{EVERY, OneMass};
+use super::parameters::PARAMETERS;
+use super::split::{Carried, Glide, Pace, Step};
+use super::{bristle, moreau, split};
 
 /// Lanes that take one way together: one vector of the widest instruction set.
 pub(super) const GROUP: usize = 8;
@@ -23,13 +24,17 @@ pub(super) struct Lanes<const N: usize> {
     kept: [f64; N],
     gain: [f64; N],
     h: Pure,
+    some_rigid: bool,
 }
 
-/// Where the lanes are: angle and speed.
+/// Where the lanes are: angle, speed, and what is carried besides them, which plain lanes do not touch.
+#[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct State<const N: usize> {
     pub phi: [f64; N],
     pub v: [f64; N],
+    pub rest_s: [f64; N],
+    pub bristle: [f64; N],
 }
 
 impl<const N: usize> Lanes<N> {
@@ -43,6 +48,7 @@ impl<const N: usize> Lanes<N> {
             kept: [0.0; N],
             gain: [0.0; N],
             h,
+            some_rigid: bodies.iter().any(|body| !body.bristle.acts()),
         };
         for lane in 0..N {
             let body = &bodies[lane.min(bodies.len() - 1)];
@@ -77,6 +83,8 @@ impl<const N: usize> State<N> {
         Self {
             phi: std::array::from_fn(|lane| of(lane).phi),
             v: std::array::from_fn(|lane| of(lane).speed),
+            rest_s: [0.0; N],
+            bristle: [0.0; N],
         }
     }
 
@@ -84,13 +92,27 @@ impl<const N: usize> State<N> {
     pub fn at(&self, lane: usize) -> (Pure, Pure) {
         (Pure(self.phi[lane]), Pure(self.v[lane]))
     }
+
+    #[inline(always)]
+    pub fn carried(&self, lane: usize) -> Carried {
+        Carried {
+            rest_s: Pure(self.rest_s[lane]),
+            bristle: Pure(self.bristle[lane]),
+        }
+    }
 }
 
 /// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
 /// code for the instruction set.
 pub(super) trait Advance {
-    /// One sub-step of one lane.
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step;
+    /// One sub-step of one lane from an angle and a speed.
+    fn step(
+        body: &OneMass<Pure>,
+        span: &Span,
+        pace: Pace,
+        from: (Pure, Pure),
+        carried: Carried,
+    ) -> Step;
 
     /// Takes every lane one sub-step further, each along its span.
     fn advance<const N: usize>(
@@ -100,13 +122,19 @@ pub(super) trait Advance {
     );
 }
 
-/// The split step.
-pub(super) struct Split<const RICH: bool>;
+/// The split step on a rigid contact, with the effects of a level.
+pub(super) struct Split<const WITH: usize>;
 
-impl<const RICH: bool> Advance for Split<RICH> {
+impl<const WITH: usize> Advance for Split<WITH> {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
-        split::step::<RICH>(body, span, pace, phi, v)
+    fn step(
+        body: &OneMass<Pure>,
+        span: &Span,
+        pace: Pace,
+        from: (Pure, Pure),
+        carried: Carried,
+    ) -> Step {
+        split::step::<WITH>(body, span, pace, from, carried.rest_s)
     }
 
     #[inline(always)]
@@ -117,12 +145,13 @@ impl<const RICH: bool> Advance for Split<RICH> {
     ) {
         for first in (0..N).step_by(GROUP) {
             let (mut phi_next, mut v_next) = ([0.0; GROUP], [0.0; GROUP]);
+            let mut rest_next = [0.0; GROUP];
             let mut event = [0u64; GROUP];
             let mut any = 0;
             for i in 0..GROUP {
                 let (body, pace) = lanes.lane(first + i);
                 let (phi, v) = state.at(first + i);
-                let plain = split::glide::<RICH>(&body, &span_of(first + i), pace, phi, v);
+                let plain = split::glide::<WITH>(&body, &span_of(first + i), pace, phi, v);
                 phi_next[i] = plain.phi.0;
                 v_next[i] = plain.speed.0;
                 event[i] = u64::from(plain.event);
@@ -133,9 +162,10 @@ impl<const RICH: bool> Advance for Split<RICH> {
                 let mut moves = 0;
                 for i in 0..GROUP {
                     let (body, _) = lanes.lane(first + i);
-                    let (phi, v) = state.at(first + i);
-                    moves |= event[i]
-                        & u64::from(!split::stays::<RICH>(&body, &span_of(first + i), phi, v));
+                    let rest_s = Pure(state.rest_s[first + i]);
+                    let (from, span) = (state.at(first + i), span_of(first + i));
+                    let stays = split::stays::<WITH>(&body, &span, lanes.h, from, rest_s);
+                    moves |= event[i] & u64::from(!stays);
                 }
                 if moves == 0 {
                     for i in 0..GROUP {
@@ -143,6 +173,10 @@ impl<const RICH: bool> Advance for Split<RICH> {
                         let rests = event[i] != 0;
                         phi_next[i] = (phi + Pure::ZERO).when(rests, Pure(phi_next[i])).0;
                         v_next[i] = Pure::ZERO.when(rests, Pure(v_next[i])).0;
+                        if WITH >= EVERY {
+                            let longer = Pure(state.rest_s[first + i]) + lanes.h;
+                            rest_next[i] = longer.when(rests, Pure::ZERO).0;
+                        }
                     }
                 } else {
                     for i in 0..GROUP {
@@ -152,16 +186,62 @@ impl<const RICH: bool> Advance for Split<RICH> {
                             speed: Pure(v_next[i]),
                             event: event[i] != 0,
                         };
-                        let from = state.at(first + i);
-                        let next =
-                            split::resolve::<RICH>(&body, &span_of(first + i), pace, from, plain);
+                        let (from, span) = (state.at(first + i), span_of(first + i));
+                        let rest_s = Pure(state.rest_s[first + i]);
+                        let next = split::resolve::<WITH>(&body, &span, pace, from, rest_s, plain);
                         phi_next[i] = next.phi.0;
                         v_next[i] = next.speed.0;
+                        rest_next[i] = next.carried.rest_s.0;
                     }
                 }
             }
             state.phi[first..first + GROUP].copy_from_slice(&phi_next);
             state.v[first..first + GROUP].copy_from_slice(&v_next);
+            if WITH >= EVERY {
+                state.rest_s[first..first + GROUP].copy_from_slice(&rest_next);
+            }
+        }
+    }
+}
+
+/// The split step where the contact of some lanes is elastic.
+pub(super) struct Elastic;
+
+impl Advance for Elastic {
+    #[inline(always)]
+    fn step(
+        body: &OneMass<Pure>,
+        span: &Span,
+        pace: Pace,
+        from: (Pure, Pure),
+        carried: Carried,
+    ) -> Step {
+        if body.bristle.per_travel.0 > 0.0 {
+            bristle::step(body, span, pace, from, carried)
+        } else {
+            Split::<EVERY>::step(body, span, pace, from, carried)
+        }
+    }
+
+    #[inline(always)]
+    fn advance<const N: usize>(
+        lanes: &Lanes<N>,
+        span_of: impl Fn(usize) -> Span,
+        state: &mut State<N>,
+    ) {
+        let from = *state;
+        if lanes.some_rigid {
+            Split::<EVERY>::advance(lanes, &span_of, state);
+        }
+        for lane in 0..N {
+            let (body, pace) = lanes.lane(lane);
+            let (at, carried) = (from.at(lane), from.carried(lane));
+            let next = bristle::step(&body, &span_of(lane), pace, at, carried);
+            let elastic = body.bristle.per_travel.0 > 0.0;
+            let (phi, v) = state.at(lane);
+            state.phi[lane] = next.phi.when(elastic, phi).0;
+            state.v[lane] = next.speed.when(elastic, v).0;
+            state.bristle[lane] = next.carried.bristle.0;
         }
     }
 }
@@ -171,8 +251,14 @@ pub(super) struct MoreauJean;
 
 impl Advance for MoreauJean {
     #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> Step {
-        moreau::step(body, span, pace, phi, v)
+    fn step(
+        body: &OneMass<Pure>,
+        span: &Span,
+        pace: Pace,
+        from: (Pure, Pure),
+        carried: Carried,
+    ) -> Step {
+        moreau::step(body, span, pace, from, carried.rest_s)
     }
 
     #[inline(always)]
@@ -183,10 +269,11 @@ impl Advance for MoreauJean {
     ) {
         for lane in 0..N {
             let (body, pace) = lanes.lane(lane);
-            let (phi, v) = state.at(lane);
-            let next = moreau::step(&body, &span_of(lane), pace, phi, v);
+            let (at, carried) = (state.at(lane), state.carried(lane));
+            let next = Self::step(&body, &span_of(lane), pace, at, carried);
             state.phi[lane] = next.phi.0;
             state.v[lane] = next.speed.0;
+            state.rest_s[lane] = next.carried.rest_s.0;
         }
     }
 }

@@ -66,7 +66,7 @@ impl<'a, const N: usize> Samples<'a, N> {
     /// Takes in one sample of every lane.
     #[inline(always)]
     pub fn take(&mut self, sample: usize, state: &State<N>) {
-        let State { phi, v } = state;
+        let State { phi, v, .. } = state;
         self.angles.take(sample, phi);
         self.speeds.take(sample, v);
         if self.rows.is_empty() {

@@ -7,7 +7,7 @@
 
 use super::drive::Span;
 use super::number::Pure;
-use super::one_mass::OneMass;
+use super::one_mass::{CURVED, OneMass};
 use crate::effects::Lane;
 
 /// Where one sub-step ended, and what happened in it.
@@ -25,6 +25,27 @@ pub(super) struct Step {
     pub stuck: Pure,
     /// Speed with which the first part ended.
     pub speed_turn: Pure,
+    /// Dry friction in the middle of the step on an elastic contact; 0 on a rigid one, which has two parts.
+    pub grip: Pure,
+    /// What goes on to the next step besides angle and speed.
+    pub carried: Carried,
+}
+
+/// What a body carries from step to step besides angle and speed. Plain bodies do not use it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Carried {
+    /// Seconds at rest so far.
+    pub rest_s: Pure,
+    /// Friction state of an elastic contact.
+    pub bristle: Pure,
+}
+
+impl Carried {
+    /// Of a body that has just come.
+    pub const NONE: Self = Self {
+        rest_s: Pure::ZERO,
+        bristle: Pure::ZERO,
+    };
 }
 
 /// What a lane's step of fixed length needs of its body: divisions that are made once. With viscous friction at the
@@ -69,7 +90,7 @@ pub(super) struct Glide {
 
 /// One sub-step under the assumption that the speed keeps its sign; says whether it does.
 #[inline(always)]
-pub(super) fn glide<const RICH: bool>(
+pub(super) fn glide<const WITH: usize>(
     body: &OneMass<Pure>,
     span: &Span,
     pace: Pace,
@@ -82,9 +103,9 @@ pub(super) fn glide<const RICH: bool>(
     let side = v.side();
     let middle = phi + drift * v;
     let (psi, load) = span.middle();
-    let torque = body.torque::<RICH>(psi, load, middle);
-    let mut speed = v * kept + gain * (torque - body.kinetic::<RICH>(side));
-    if RICH {
+    let torque = body.torque::<WITH>(psi, load, middle);
+    let mut speed = v * kept + gain * (torque - body.kinetic::<WITH>(side, middle, load));
+    if WITH >= CURVED {
         // What curves with speed: predicted at the speed of the start, then taken at the middle.
         let guess = speed - gain * body.curved(v, side);
         speed = speed - gain * body.curved((v + guess) * Pure(0.5), side);
@@ -96,43 +117,45 @@ pub(super) fn glide<const RICH: bool>(
     }
 }
 
-/// Whether a body at rest stays there for the whole sub-step. [`step`] then ends at `phi + 0`, at a speed of 0.
+/// Whether a body that has been at rest for some time stays there for the whole sub-step. [`step`] then ends at
+/// `phi + 0`, at a speed of 0, a step's time later.
 #[inline(always)]
-pub(super) fn stays<const RICH: bool>(
+pub(super) fn stays<const WITH: usize>(
     body: &OneMass<Pure>,
     span: &Span,
-    phi: Pure,
-    v: Pure,
+    h: Pure,
+    (phi, v): (Pure, Pure),
+    rest_s: Pure,
 ) -> bool {
-    let (psi, load) = span.start();
-    let at_start = body.torque::<RICH>(psi, load, phi);
-    let (psi, load) = span.end();
-    let at_end = body.torque::<RICH>(psi, load, phi);
-    (v.0 == 0.0)
-        & at_start.abs_at_most(body.held::<RICH>(at_start.sign()))
-        & at_end.abs_at_most(body.held::<RICH>(at_end.sign()))
+    let holds = |(psi, load): (Pure, Pure), rest_s: Pure| {
+        let torque = body.torque::<WITH>(psi, load, phi);
+        let held = body.held::<WITH>(phi, load, rest_s);
+        torque.abs_at_most(held.to(torque.sign()))
+    };
+    (v.0 == 0.0) & holds(span.start(), rest_s) & holds(span.end(), rest_s + h)
 }
 
-/// One sub-step.
+/// One sub-step of one body from (`phi`, `v`), at rest for `rest_s` if it is.
 #[inline(always)]
-pub(super) fn step<const RICH: bool>(
-    body: &OneMass<Pure>,
-    span: &Span,
-    pace: Pace,
-    phi: Pure,
-    v: Pure,
-) -> Step {
-    let plain = glide::<RICH>(body, span, pace, phi, v);
-    resolve::<RICH>(body, span, pace, (phi, v), plain)
-}
-
-/// The sub-step that starts at (`phi`, `v`) once it is known where it would end without an event.
-#[inline(always)]
-pub(super) fn resolve<const RICH: bool>(
+pub(super) fn step<const WITH: usize>(
     body: &OneMass<Pure>,
     span: &Span,
     pace: Pace,
     (phi, v): (Pure, Pure),
+    rest_s: Pure,
+) -> Step {
+    let plain = glide::<WITH>(body, span, pace, phi, v);
+    resolve::<WITH>(body, span, pace, (phi, v), rest_s, plain)
+}
+
+/// The sub-step that starts at (`phi`, `v`) once it is known where it would end without an event.
+#[inline(always)]
+pub(super) fn resolve<const WITH: usize>(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    (phi, v): (Pure, Pure),
+    rest_s: Pure,
     plain: Glide,
 ) -> Step {
     let half = Pure(0.5);
@@ -146,17 +169,22 @@ pub(super) fn resolve<const RICH: bool>(
     let fall = (v - v1).when(event & !rested, Pure::ONE);
     let moving = (v / fall).when(!rested, Pure::ZERO);
     let phi_turn = phi + moving * (h * half) * v;
-    let (psi, load) = span.at(moving);
-    let at_turn = body.torque::<RICH>(psi, load, phi_turn);
-    let (psi, load) = span.end();
-    let at_end = body.torque::<RICH>(psi, load, phi_turn);
-    let limit_turn = body.held::<RICH>(at_turn.sign());
-    let limit_end = body.held::<RICH>(at_end.sign());
-    let breaks_now = at_turn.abs().0 > limit_turn.0;
-    let breaks_later = !breaks_now & (at_end.abs().0 > limit_end.0);
-    let rise = (at_end - at_turn).when(breaks_later, Pure::ONE);
-    let at_break = at_end.sign() * limit_end;
-    let located = ((at_break - at_turn) / rise).clamp(Pure::ZERO, Pure::ONE);
+    let (psi, load_turn) = span.at(moving);
+    let at_turn = body.torque::<WITH>(psi, load_turn, phi_turn);
+    let (psi, load_end) = span.end();
+    let at_end = body.torque::<WITH>(psi, load_end, phi_turn);
+    let rest_turn = rest_s.when(rested, Pure::ZERO);
+    let rest_end = rest_turn + (Pure::ONE - moving) * h;
+    let held_turn = body.held::<WITH>(phi_turn, load_turn, rest_turn);
+    let held_end = body.held::<WITH>(phi_turn, load_end, rest_end);
+    let side = at_end.sign();
+    // By how much the torque is beyond what is held, to the side to which it is in the end.
+    let beyond_turn = at_turn * side - held_turn.to(side);
+    let beyond_end = at_end * side - held_end.to(side);
+    let breaks_now = at_turn.abs().0 > held_turn.to(at_turn.sign()).0;
+    let breaks_later = !breaks_now & (beyond_end.0 > 0.0);
+    let rise = (beyond_end - beyond_turn).when(breaks_later, Pure::ONE);
+    let located = (-beyond_turn / rise).clamp(Pure::ZERO, Pure::ONE);
     let stuck = Pure::ZERO.when(breaks_now, located.when(breaks_later, Pure::ONE));
 
     // From the break-away to the end, from rest.
@@ -164,11 +192,11 @@ pub(super) fn resolve<const RICH: bool>(
     let direction = way.sign();
     let left = (Pure::ONE - moving) * (Pure::ONE - stuck) * h;
     let drift = left * half;
-    let mean =
-        (at_turn + (at_end - at_turn) * stuck + at_end) * half - body.kinetic::<RICH>(direction);
+    let mean = (at_turn + (at_end - at_turn) * stuck + at_end) * half
+        - body.kinetic::<WITH>(direction, phi_turn, load_end);
     let slow = left / (body.inertia + drift * body.linear(Pure::ONE));
     let mut v2 = slow * mean;
-    if RICH {
+    if WITH >= CURVED {
         let guess = v2 - slow * body.curved(Pure::ZERO, direction);
         v2 = v2 - slow * body.curved(guess * half, direction);
     }
@@ -181,5 +209,10 @@ pub(super) fn resolve<const RICH: bool>(
         moving: moving.when(event, Pure::ONE),
         stuck: ((Pure::ONE - moving) * stuck).when(event, Pure::ZERO),
         speed_turn: Pure::ZERO.when(event, v1),
+        grip: Pure::ZERO,
+        carried: Carried {
+            rest_s: rest_end.when(event & (stuck.0 == 1.0), Pure::ZERO),
+            bristle: Pure::ZERO,
+        },
     }
 }

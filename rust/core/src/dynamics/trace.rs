@@ -2,15 +2,15 @@
 
 use crate::Error;
 
-use super::drive::Drive;
+use super::drive::{Drive, Span};
 use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lane_check::check_lanes;
 use super::lanes::{Drives, Kernel, Start};
-use super::ledger::{Ledger, entry};
-use super::march::{Advance, MoreauJean, Split};
+use super::ledger::{ENTRIES, Ledger, entry};
+use super::march::{Advance, Elastic, MoreauJean, Split};
 use super::number::Pure;
-use super::one_mass::OneMass;
-use super::split::Pace;
+use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::split::{Carried, Pace, Step};
 
 /// What [`trace`] returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,10 +19,33 @@ pub struct Trace {
     pub phi: Vec<f64>,
     /// Its speed, rad/s.
     pub speed: Vec<f64>,
+    /// Torque of friction against the motion, viscous and curved parts included, Nm: the mean over the step that follows
+    /// the sample (before the last sample: that leads to it). At rest it is what is held.
+    pub friction: Vec<f64>,
     /// What happened, in order.
     pub events: Vec<Event>,
     /// Where the energy went.
     pub ledger: Ledger,
+}
+
+/// One sub-step of one body.
+type Stepper = fn(&OneMass<Pure>, &Span, Pace, (Pure, Pure), Carried) -> Step;
+
+/// What is booked of it.
+type Booker =
+    fn(&OneMass<Pure>, f64, (Pure, Pure), &Step, ((Pure, Pure), (Pure, Pure))) -> [f64; ENTRIES];
+
+/// The mean torque of friction over a step: what springs and load give and inertia does not take.
+fn balance(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    (phi, v): (Pure, Pure),
+    step: &Step,
+) -> f64 {
+    let (psi, load) = span.middle();
+    let middle = (phi + step.phi) * Pure(0.5);
+    (body.torque::<EVERY>(psi, load, middle) - (step.speed - v) / pace.rate).0
 }
 
 /// Runs one body along a drive, with the same bits as a lane of [`super::simulate`].
@@ -35,9 +58,16 @@ pub fn trace(
     kernel: Kernel,
     drive: &Drive,
 ) -> Result<Trace, Error> {
-    check_lanes(&[*body], &[start], Drives::Shared(drive))?;
-    let rich = body.is_rich();
+    check_lanes(&[*body], &[start], Drives::Shared(drive), kernel)?;
+    let (step, booked): (Stepper, Booker) = match (kernel, body.effects()) {
+        (Kernel::MoreauJean, _) => (MoreauJean::step, entry::<EVERY>),
+        (Kernel::Split, PLAIN) => (Split::<PLAIN>::step, entry::<PLAIN>),
+        (Kernel::Split, CURVED) => (Split::<CURVED>::step, entry::<CURVED>),
+        (Kernel::Split, EVERY) => (Split::<EVERY>::step, entry::<EVERY>),
+        (Kernel::Split, _) => (Elastic::step, entry::<EVERY>),
+    };
     let body = body.pure();
+    let mut carried = Carried::NONE;
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
     let h = drive.step_s();
     let pace = Pace::of(&body, Pure(h));
@@ -45,6 +75,7 @@ pub fn trace(
     let mut out = Trace {
         phi: Vec::with_capacity(samples),
         speed: Vec::with_capacity(samples),
+        friction: Vec::with_capacity(samples),
         events: Vec::new(),
         ledger: Ledger::default(),
     };
@@ -61,11 +92,7 @@ pub fn trace(
             let number = sample * drive.substeps() + sub;
             let span = drive.span(number);
             let time_s = number as f64 * h;
-            let step = match (kernel, rich) {
-                (Kernel::MoreauJean, _) => MoreauJean::step(&body, &span, pace, phi, v),
-                (Kernel::Split, false) => Split::<false>::step(&body, &span, pace, phi, v),
-                (Kernel::Split, true) => Split::<true>::step(&body, &span, pace, phi, v),
-            };
+            let step = step(&body, &span, pace, (phi, v), carried);
             friction_events(&mut out.events, time_s, h, v, &step);
             if body.gap.0 > 0.0 {
                 let (psi, _) = span.end();
@@ -75,15 +102,15 @@ pub fn trace(
                 gap = next;
             }
             let drives = (span.start(), span.end());
-            let booked = if rich {
-                entry::<true>(&body, h, (phi, v), &step, drives)
-            } else {
-                entry::<false>(&body, h, (phi, v), &step, drives)
-            };
-            out.ledger.book(&booked);
-            (phi, v) = (step.phi, step.speed);
+            out.ledger.book(&booked(&body, h, (phi, v), &step, drives));
+            if sub == 0 {
+                out.friction
+                    .push(balance(&body, &span, pace, (phi, v), &step));
+            }
+            (phi, v, carried) = (step.phi, step.speed, step.carried);
         }
     }
+    out.friction.extend(out.friction.last().copied());
     let (psi, _) = drive.span((samples - 1) * drive.substeps() - 1).end();
     out.ledger.stored_last = body.stored(psi, phi, v).0;
     out.ledger.turnover += out.ledger.stored_first;

@@ -3,12 +3,13 @@
 use pulp::WithSimd;
 
 use super::drive::Drive;
-use super::inside::{Booked, Inside};
+use super::inside::Inside;
 use super::lane_drives::{BlockDrives, Spans};
 use super::lanes::{Drives, Kernel, LOOK, Part};
-use super::march::{Advance, Lanes, MoreauJean, Split, State};
+use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
 use super::number::Pure;
 use super::observe::Samples;
+use super::one_mass::{CURVED, EVERY, PLAIN};
 
 /// One block of `N` lanes, the same steps with the same bits as [`super::lanes::Task`].
 pub(super) struct Watched<'a, const INSIDE: bool, const N: usize>(pub Part<'a>);
@@ -18,10 +19,12 @@ impl<const INSIDE: bool, const N: usize> WithSimd for Watched<'_, INSIDE, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.rich) {
-            (Kernel::Split, false) => self.along::<Split<false>>(),
-            (Kernel::Split, true) => self.along::<Split<true>>(),
+        match (self.0.kernel, self.0.effects) {
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
+            (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
+            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
+            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
+            (Kernel::Split, _) => self.along::<Elastic>(),
         }
     }
 }
@@ -58,11 +61,7 @@ impl<const INSIDE: bool, const N: usize> Watched<'_, INSIDE, N> {
         let lanes = Lanes::<N>::new(part.bodies, Pure(part.drives.step_s()));
         let mut state = State::<N>::new(part.starts);
         let mut spans = Spans::<N>::new();
-        let mut inside = Inside::<N>::new(match (part.keep.energy, part.rich) {
-            (false, _) => Booked::Nothing,
-            (true, false) => Booked::Plain,
-            (true, true) => Booked::Rich,
-        });
+        let mut inside = Inside::<N>::new(part.keep.energy.then_some(part.effects));
         let mut seen = Samples::<N>::new(part.places, part.keep, part.bodies.len(), samples);
         for sample in 0..samples {
             seen.take(sample, &state);

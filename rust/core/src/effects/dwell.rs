@@ -43,6 +43,7 @@ impl Law for Dwell {
     };
     const COLUMNS: usize = 1;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let grown = L::splat(1.0) - (motion.rest_s * L::splat(-1.0 / inner[0])).exp();
         // After break-away the excess fades over a quarter per cent of the range, 0.3 degrees of 120.
