@@ -71,6 +71,10 @@ def test_events_and_energies_of_a_lane_are_those_of_its_trace(method, further):
     given = lanes(LANES) | {k: np.where(np.arange(LANES) % 2, v, 0.0) for k, v in further.items()}
     if "dwell.time_s" in further:
         given["dwell.time_s"] = np.full(LANES, further["dwell.time_s"])
+    if "presliding.breakaway_rad" in further:
+        # An elastic contact is never at rest: nothing that rest brings about goes with it.
+        rigid = given["presliding.breakaway_rad"] == 0.0
+        given |= {k: np.where(rigid, given[k], 0.0) for k in ("stiction.extra_nm", "dwell.extra_nm")}
     many = summarise(given, hand, load_nm=load, method=method, **OPTIONS)
     for lane in range(0, LANES, 3):
         alone = trace(one(lane, given), hand[lane], load_nm=load[lane], method=method, **RATE)

@@ -303,6 +303,9 @@ def simulate(
     map: Map = [],  # noqa: B006
     unit: Unit = [],  # noqa: B006
     resample: Resample = None,
+    report: Annotated[
+        str | None, typer.Option("--report", metavar="F.html", help="Write an HTML page with pictures of every run.")
+    ] = None,
     json: Json = False,
     debug: Debug = False,
 ) -> int:
@@ -312,7 +315,7 @@ def simulate(
     """
     from .simulate import run_simulate
 
-    return run_simulate(model, runs or [], sine, seconds, rate, out, json, map, unit, resample)
+    return run_simulate(model, runs or [], sine, seconds, rate, out, report, json, map, unit, resample)
 
 
 @app.command()
