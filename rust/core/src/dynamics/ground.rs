@@ -4,7 +4,7 @@ use crate::effects::{Cogging, DeadZone, EndStop, Lane, OncePerRev, TwicePerRev};
 use crate::projections::luz;
 
 use super::number::Pure;
-use super::one_mass::{at, one};
+use super::one_mass::{WAVY, at, one};
 
 /// How many values a [`Ground`] has.
 pub(super) const VALUES: usize = 11;
@@ -56,11 +56,15 @@ impl<L: Copy> Ground<L> {
 }
 
 impl Ground<f64> {
-    /// Whether anything of it acts.
-    #[must_use]
-    pub fn acts(&self) -> bool {
+    /// Whether a stop or a dead zone is there.
+    pub(super) fn has_springs(&self) -> bool {
+        self.end_stop[0] != 0.0 || self.dead_zone[0] != 0.0
+    }
+
+    /// Whether there are waves per turn.
+    pub(super) fn has_waves(&self) -> bool {
         let waves = self.once.iter().chain(&self.twice).chain(&self.cogging);
-        self.end_stop[0] != 0.0 || self.dead_zone[0] != 0.0 || waves.copied().any(|v| v != 0.0)
+        waves.copied().any(|v| v != 0.0)
     }
 
     /// The stiffest that each part can be, at the road wheel, Nm/rad: stop, dead zone, the three waves together.
@@ -88,15 +92,18 @@ impl Ground<Pure> {
     /// The torque against a turn to the positive side. The pinion turns `ratio` times as far as the road wheel; what
     /// acts on it is felt `ratio` times at the road wheel.
     #[inline(always)]
-    pub(super) fn torque(&self, phi: Pure, ratio: Pure) -> Pure {
+    pub(super) fn torque<const WITH: usize>(&self, phi: Pure, ratio: Pure) -> Pure {
         let turn = ratio * phi;
         let here = at(phi, turn);
+        let springs = self.end_stop[0] * one::<EndStop>(&here, self.end_stop[1].0)
+            + self.dead_zone[0] * one::<DeadZone>(&here, self.dead_zone[1].0);
+        if WITH & WAVY == 0 {
+            return springs;
+        }
         let waves = wave::<OncePerRev>(turn, 0.0, self.once)
             + wave::<TwicePerRev>(turn, 0.0, self.twice)
             + wave::<Cogging>(turn, self.per_turn.0, self.cogging);
-        self.end_stop[0] * one::<EndStop>(&here, self.end_stop[1].0)
-            + self.dead_zone[0] * one::<DeadZone>(&here, self.dead_zone[1].0)
-            + ratio * waves
+        springs + ratio * waves
     }
 
     /// The energy held, the waves' counted from a road wheel in the middle: the integral of the torque.

@@ -3,10 +3,10 @@
 use super::events::{EventKind, Turns, beyond_gap};
 use super::keep::ENERGIES;
 use super::lane_drives::Spans;
-use super::ledger::{ENTRIES, Ledger, entry};
+use super::ledger::{ENTRIES, Ledger, TAME, entry};
 use super::march::{Advance, GROUP, Lanes, State};
 use super::number::Pure;
-use super::one_mass::{CURVED, EVERY, PLAIN};
+use super::one_mass::{EVERY, PLAIN, WAVY};
 use super::split::{Carried, Step};
 
 /// One step of a group of lanes.
@@ -105,7 +105,7 @@ impl<const N: usize> Inside<N> {
             match self.booked {
                 None => {}
                 Some(PLAIN) => self.book::<PLAIN>(first, lanes, spans, state, &steps),
-                Some(CURVED) => self.book::<CURVED>(first, lanes, spans, state, &steps),
+                Some(1..WAVY) => self.book::<TAME>(first, lanes, spans, state, &steps),
                 Some(_) => self.book::<EVERY>(first, lanes, spans, state, &steps),
             }
             state.phi[first..first + GROUP].copy_from_slice(&steps.rows[0]);

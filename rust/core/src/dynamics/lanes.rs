@@ -15,10 +15,10 @@ use super::drive::Drive;
 use super::keep::Keep;
 use super::lane_check::check_lanes;
 use super::lane_drives::LaneDrives;
-use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
+use super::march::{Advance, Lanes, State, WithKernel, choose};
 use super::number::Pure;
 use super::observe::{Places, Samples};
-use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::one_mass::OneMass;
 use super::watched::Watched;
 
 /// How a step is made.
@@ -199,9 +199,7 @@ pub fn run_lanes(
     let effects = batch
         .bodies
         .iter()
-        .map(OneMass::effects)
-        .max()
-        .unwrap_or(PLAIN);
+        .fold(0, |bits, body| bits | body.effects());
     let places = cut(phi, block * samples, count)
         .zip(cut(speed, block * samples, count))
         .zip(cut(rows, block * keep.width(samples), count))
@@ -306,19 +304,16 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.effects) {
-            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
-            (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
-            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
-            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
-            (Kernel::Split, _) => self.along::<Elastic>(),
-        }
+        let (kernel, effects) = (self.0.kernel, self.0.effects);
+        choose(kernel, effects, self);
     }
 }
 
-impl<const N: usize> Task<'_, N> {
+impl<const N: usize> WithKernel for Task<'_, N> {
+    type Output = ();
+
     #[inline(always)]
-    fn along<A: Advance>(self) {
+    fn with<A: Advance>(self) {
         let (part, drive) = (self.0, self.1);
         let samples = drive.samples();
         let lanes = Lanes::<N>::new(part.bodies, Pure(drive.step_s()));

@@ -2,7 +2,7 @@
 
 use super::keep::ENERGIES;
 use super::number::Pure;
-use super::one_mass::{CURVED, OneMass};
+use super::one_mass::{CURVED, EVERY, LOCAL, OneMass, PLAIN, WAVY};
 use super::split::Step;
 
 /// Energies of a trajectory, J.
@@ -68,6 +68,22 @@ impl Ledger {
 /// What is booked of a sub-step: work of handwheel and load, dry, viscous and curved heat, turnover.
 pub(super) const ENTRIES: usize = 6;
 
+/// The entry of one sub-step.
+pub(super) type Booker =
+    fn(&OneMass<Pure>, f64, (Pure, Pure), &Step, ((Pure, Pure), (Pure, Pure))) -> [f64; ENTRIES];
+
+/// What books the effects at work and as few others as there are.
+pub(super) fn booker(effects: usize) -> Booker {
+    match effects {
+        PLAIN => entry::<PLAIN>,
+        1..WAVY => entry::<TAME>,
+        _ => entry::<EVERY>,
+    }
+}
+
+/// Everything but sines.
+pub(super) const TAME: usize = LOCAL | CURVED;
+
 /// The entry of one sub-step of length `h` from (`phi`, `v`), driven from `first` to `last` (handwheel, load). Without
 /// branches, for the loop over lanes; effects that do not act change no bit of it.
 #[inline(always)]
@@ -132,7 +148,7 @@ fn part<const WITH: usize>(
             + 4.0 * (body.linear(middle).0 * middle.0)
             + body.linear(to).0 * to.0);
     let dry = body.kinetic::<WITH>(direction, place, load).0 * way;
-    if WITH < CURVED {
+    if WITH & CURVED == 0 {
         return [dry, viscous, 0.0];
     }
     let (a, b, c) = (

@@ -3,7 +3,7 @@
 use crate::effects::{Dwell, Law, Load, PositionCoulomb, TightSpot};
 
 use super::number::Pure;
-use super::one_mass::{at, one};
+use super::one_mass::{WAVY, at, one};
 
 /// How many values a [`Level`] has.
 pub(super) const VALUES: usize = 7;
@@ -46,25 +46,32 @@ impl<L: Copy> Level<L> {
 }
 
 impl Level<f64> {
-    /// Whether anything of it acts.
-    #[must_use]
-    pub fn acts(&self) -> bool {
-        self.slope != 0.0 || self.tight_spot[0] != 0.0 || self.load != 0.0 || self.dwell[0] != 0.0
+    /// Whether there is anything besides a tight spot.
+    pub(super) fn is_straight(&self) -> bool {
+        self.slope != 0.0 || self.load != 0.0 || self.dwell[0] != 0.0
+    }
+
+    /// Whether there is a tight spot.
+    pub(super) fn has_spot(&self) -> bool {
+        self.tight_spot[0] != 0.0
     }
 }
 
 impl Level<Pure> {
     /// What angle and load add.
     #[inline(always)]
-    pub(super) fn here(&self, phi: Pure, load: Pure) -> Pure {
+    pub(super) fn here<const WITH: usize>(&self, phi: Pure, load: Pure) -> Pure {
         let mut here = at(phi, Pure::ZERO);
         here.load_n = load;
+        let straight =
+            self.slope * one::<PositionCoulomb>(&here, 0.0) + self.load * one::<Load>(&here, 0.0);
+        if WITH & WAVY == 0 {
+            return straight;
+        }
         let [extra, angle, width] = self.tight_spot;
         let mut spot = [Pure::ZERO];
         TightSpot::basis(&here, &[angle.0, width.0], &mut spot);
-        self.slope * one::<PositionCoulomb>(&here, 0.0)
-            + extra * spot[0]
-            + self.load * one::<Load>(&here, 0.0)
+        straight + extra * spot[0]
     }
 
     /// What a rest of so many seconds adds to the friction at rest. The law's fading after the break-away plays no part:

@@ -6,9 +6,10 @@
 //! takes (and hence a lane's neighbours) changes no bit.
 
 use super::drive::Span;
+use super::lanes::Kernel;
 use super::lanes::Start;
 use super::number::Pure;
-use super::one_mass::{EVERY, OneMass};
+use super::one_mass::{CURVED, ELASTIC, EVERY, LOCAL, LUGRE, OneMass, PLAIN};
 use super::parameters::PARAMETERS;
 use super::split::{Carried, Glide, Pace, Step};
 use super::{bristle, moreau, split};
@@ -122,6 +123,32 @@ pub(super) trait Advance {
     );
 }
 
+/// What is done with the kernel that a method and the effects of a batch ask for.
+pub(super) trait WithKernel {
+    type Output;
+
+    fn with<A: Advance>(self) -> Self::Output;
+}
+
+/// Everything on an elastic contact.
+pub(super) const WHOLE: usize = EVERY | LUGRE;
+
+/// Chooses the kernel that looks at the given effects ([`OneMass::effects`]) and at as few others as there are.
+#[inline(always)]
+pub(super) fn choose<T: WithKernel>(kernel: Kernel, effects: usize, then: T) -> T::Output {
+    const BOTH: usize = LOCAL | CURVED;
+    match (kernel, effects) {
+        (Kernel::MoreauJean, _) => then.with::<MoreauJean>(),
+        (_, PLAIN) => then.with::<Split<PLAIN>>(),
+        (_, LOCAL) => then.with::<Split<LOCAL>>(),
+        (_, CURVED) => then.with::<Split<CURVED>>(),
+        (_, BOTH) => then.with::<Split<BOTH>>(),
+        (_, ..=EVERY) => then.with::<Split<EVERY>>(),
+        _ if effects & !(ELASTIC | LOCAL) == 0 => then.with::<Elastic<LOCAL>>(),
+        _ => then.with::<Elastic<WHOLE>>(),
+    }
+}
+
 /// The split step on a rigid contact, with the effects of a level.
 pub(super) struct Split<const WITH: usize>;
 
@@ -173,7 +200,7 @@ impl<const WITH: usize> Advance for Split<WITH> {
                         let rests = event[i] != 0;
                         phi_next[i] = (phi + Pure::ZERO).when(rests, Pure(phi_next[i])).0;
                         v_next[i] = Pure::ZERO.when(rests, Pure(v_next[i])).0;
-                        if WITH >= EVERY {
+                        if WITH & LOCAL != 0 {
                             let longer = Pure(state.rest_s[first + i]) + lanes.h;
                             rest_next[i] = longer.when(rests, Pure::ZERO).0;
                         }
@@ -197,7 +224,7 @@ impl<const WITH: usize> Advance for Split<WITH> {
             }
             state.phi[first..first + GROUP].copy_from_slice(&phi_next);
             state.v[first..first + GROUP].copy_from_slice(&v_next);
-            if WITH >= EVERY {
+            if WITH & LOCAL != 0 {
                 state.rest_s[first..first + GROUP].copy_from_slice(&rest_next);
             }
         }
@@ -205,9 +232,9 @@ impl<const WITH: usize> Advance for Split<WITH> {
 }
 
 /// The split step where the contact of some lanes is elastic.
-pub(super) struct Elastic;
+pub(super) struct Elastic<const WITH: usize>;
 
-impl Advance for Elastic {
+impl<const WITH: usize> Advance for Elastic<WITH> {
     #[inline(always)]
     fn step(
         body: &OneMass<Pure>,
@@ -217,9 +244,9 @@ impl Advance for Elastic {
         carried: Carried,
     ) -> Step {
         if body.bristle.per_travel.0 > 0.0 {
-            bristle::step(body, span, pace, from, carried)
+            bristle::step::<WITH>(body, span, pace, from, carried)
         } else {
-            Split::<EVERY>::step(body, span, pace, from, carried)
+            Split::<WITH>::step(body, span, pace, from, carried)
         }
     }
 
@@ -231,12 +258,12 @@ impl Advance for Elastic {
     ) {
         let from = *state;
         if lanes.some_rigid {
-            Split::<EVERY>::advance(lanes, &span_of, state);
+            Split::<WITH>::advance(lanes, &span_of, state);
         }
         for lane in 0..N {
             let (body, pace) = lanes.lane(lane);
             let (at, carried) = (from.at(lane), from.carried(lane));
-            let next = bristle::step(&body, &span_of(lane), pace, at, carried);
+            let next = bristle::step::<WITH>(&body, &span_of(lane), pace, at, carried);
             let elastic = body.bristle.per_travel.0 > 0.0;
             let (phi, v) = state.at(lane);
             state.phi[lane] = next.phi.when(elastic, phi).0;

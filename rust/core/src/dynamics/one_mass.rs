@@ -14,15 +14,21 @@ use super::ground::Ground;
 use super::level::Level;
 use super::number::Pure;
 
-/// Which effects a step looks at: what does not act adds exactly 0, so that leaving it out changes no bit. Linear
-/// springs, a gap, viscous and symmetric dry friction.
+/// Which effects a step looks at, as bits; what does not act adds exactly 0, so that leaving it out changes no bit.
+/// None of them: linear springs, a gap, viscous and symmetric dry friction.
 pub(super) const PLAIN: usize = 0;
-/// What curves with speed or wind-up and what differs between the sides, too.
-pub(super) const CURVED: usize = 1;
+/// What needs neither the speed nor a transcendental function: hardening, stops, friction over side, angle and load.
+pub(super) const LOCAL: usize = 1;
+/// What depends on the speed in a curved way.
+pub(super) const CURVED: usize = 2;
+/// Waves and bumps over the angle.
+pub(super) const WAVY: usize = 4;
 /// Everything on a rigid contact.
-pub(super) const EVERY: usize = 2;
-/// Everything on an elastic contact.
-pub(super) const ELASTIC: usize = 3;
+pub(super) const EVERY: usize = LOCAL | CURVED | WAVY;
+/// A contact that gives way before it slides.
+pub(super) const ELASTIC: usize = 8;
+/// One that does so by the law of `LuGre`.
+pub(super) const LUGRE: usize = 16;
 
 /// One body: what stands between the handwheel and it, what pulls it to the ground, what brakes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,24 +120,27 @@ impl OneMass<f64> {
         ]
     }
 
-    /// Which effects the step must look at: [`PLAIN`], [`CURVED`], [`EVERY`] or [`ELASTIC`].
+    /// Which effects the step must look at, as bits.
     pub(super) fn effects(&self) -> usize {
-        let curved = [
-            self.stribeck,
-            self.drag,
-            self.asymmetric_viscous,
-            self.asymmetric_coulomb,
-            self.hardening,
-        ];
-        if self.bristle.acts() {
-            ELASTIC
-        } else if self.ground.acts() || self.level.acts() {
-            EVERY
-        } else if curved.iter().any(|v| *v != 0.0) {
-            CURVED
-        } else {
-            PLAIN
-        }
+        let any = |values: &[f64]| values.iter().any(|v| *v != 0.0);
+        let local = any(&[self.hardening, self.asymmetric_coulomb])
+            || self.ground.has_springs()
+            || self.level.is_straight();
+        [
+            (LOCAL, local),
+            (
+                CURVED,
+                any(&[self.stribeck, self.drag, self.asymmetric_viscous]),
+            ),
+            (WAVY, self.ground.has_waves() || self.level.has_spot()),
+            (ELASTIC, self.bristle.acts()),
+            (LUGRE, self.bristle.lugre != 0.0),
+        ]
+        .into_iter()
+        .fold(
+            PLAIN,
+            |bits, (bit, acts)| if acts { bits | bit } else { bits },
+        )
     }
 }
 
@@ -144,10 +153,10 @@ impl OneMass<Pure> {
         let sum = self.ratio * self.at_handwheel::<WITH>(psi, phi)
             - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
             + load;
-        if WITH < EVERY {
+        if WITH & (LOCAL | WAVY) == 0 {
             return sum;
         }
-        sum - self.ground.torque(phi, self.ratio)
+        sum - self.ground.torque::<WITH>(phi, self.ratio)
     }
 
     /// The torque that the spring asks of the handwheel.
@@ -156,7 +165,7 @@ impl OneMass<Pure> {
     pub fn at_handwheel<const WITH: usize>(&self, psi: Pure, phi: Pure) -> Pure {
         let wound = motion(self.wound(psi, phi), Pure::ZERO, Pure::ZERO);
         let linear = self.stiffness * one::<Stiffness>(&wound, 0.0);
-        if WITH < CURVED {
+        if WITH & LOCAL == 0 {
             return linear;
         }
         linear + self.hardening * one::<Hardening>(&wound, 0.0)
@@ -191,12 +200,12 @@ impl OneMass<Pure> {
     #[inline(always)]
     #[must_use]
     pub(super) fn base<const WITH: usize>(&self, phi: Pure, load: Pure) -> Pure {
-        if WITH < EVERY {
+        if WITH & (LOCAL | WAVY) == 0 {
             return self.coulomb;
         }
         let least =
             self.asymmetric_coulomb.abs() + Pure::ZERO.when(self.stribeck.0 > 0.0, -self.stribeck);
-        (self.coulomb + self.level.here(phi, load)).clamp(least, Pure(f64::INFINITY))
+        (self.coulomb + self.level.here::<WITH>(phi, load)).clamp(least, Pure(f64::INFINITY))
     }
 
     /// Dry friction while moving in a direction, without Stribeck's part.
@@ -209,7 +218,7 @@ impl OneMass<Pure> {
         load: Pure,
     ) -> Pure {
         let base = self.base::<WITH>(phi, load);
-        if WITH < CURVED {
+        if WITH & LOCAL == 0 {
             return direction * base;
         }
         let moving = motion(Pure::ZERO, Pure::ZERO, direction);
@@ -220,19 +229,19 @@ impl OneMass<Pure> {
     #[inline(always)]
     pub(super) fn held<const WITH: usize>(&self, phi: Pure, load: Pure, rest_s: Pure) -> Held {
         let base = self.base::<WITH>(phi, load);
-        if WITH < CURVED {
+        let level = if WITH & CURVED == 0 {
+            base
+        } else {
+            base + self.stribeck
+        };
+        if WITH & LOCAL == 0 {
             return Held {
-                middle: base + self.stiction,
+                middle: level + self.stiction,
                 difference: Pure::ZERO,
             };
         }
-        let middle = base + self.stribeck + self.stiction;
         Held {
-            middle: if WITH < EVERY {
-                middle
-            } else {
-                middle + self.level.rested(rest_s)
-            },
+            middle: level + self.stiction + self.level.rested(rest_s),
             difference: self.asymmetric_coulomb,
         }
     }

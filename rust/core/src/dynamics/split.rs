@@ -105,7 +105,7 @@ pub(super) fn glide<const WITH: usize>(
     let (psi, load) = span.middle();
     let torque = body.torque::<WITH>(psi, load, middle);
     let mut speed = v * kept + gain * (torque - body.kinetic::<WITH>(side, middle, load));
-    if WITH >= CURVED {
+    if WITH & CURVED != 0 {
         // What curves with speed: predicted at the speed of the start, then taken at the middle.
         let guess = speed - gain * body.curved(v, side);
         speed = speed - gain * body.curved((v + guess) * Pure(0.5), side);
@@ -196,7 +196,7 @@ pub(super) fn resolve<const WITH: usize>(
         - body.kinetic::<WITH>(direction, phi_turn, load_end);
     let slow = left / (body.inertia + drift * body.linear(Pure::ONE));
     let mut v2 = slow * mean;
-    if WITH >= CURVED {
+    if WITH & CURVED != 0 {
         let guess = v2 - slow * body.curved(Pure::ZERO, direction);
         v2 = v2 - slow * body.curved(guess * half, direction);
     }

@@ -6,10 +6,10 @@ use super::drive::{Drive, Span};
 use super::events::{Event, beyond_gap, friction_events, gap_event};
 use super::lane_check::check_lanes;
 use super::lanes::{Drives, Kernel, Start};
-use super::ledger::{ENTRIES, Ledger, entry};
-use super::march::{Advance, Elastic, MoreauJean, Split};
+use super::ledger::{Booker, Ledger, booker};
+use super::march::{Advance, WithKernel, choose};
 use super::number::Pure;
-use super::one_mass::{CURVED, EVERY, OneMass, PLAIN};
+use super::one_mass::{EVERY, OneMass};
 use super::split::{Carried, Pace, Step};
 
 /// What [`trace`] returns.
@@ -31,9 +31,16 @@ pub struct Trace {
 /// One sub-step of one body.
 type Stepper = fn(&OneMass<Pure>, &Span, Pace, (Pure, Pure), Carried) -> Step;
 
-/// What is booked of it.
-type Booker =
-    fn(&OneMass<Pure>, f64, (Pure, Pure), &Step, ((Pure, Pure), (Pure, Pure))) -> [f64; ENTRIES];
+/// The sub-step of one body by a kernel.
+struct OneStep;
+
+impl WithKernel for OneStep {
+    type Output = Stepper;
+
+    fn with<A: Advance>(self) -> Stepper {
+        A::step
+    }
+}
 
 /// The mean torque of friction over a step: what springs and load give and inertia does not take.
 fn balance(
@@ -59,13 +66,8 @@ pub fn trace(
     drive: &Drive,
 ) -> Result<Trace, Error> {
     check_lanes(&[*body], &[start], Drives::Shared(drive), kernel)?;
-    let (step, booked): (Stepper, Booker) = match (kernel, body.effects()) {
-        (Kernel::MoreauJean, _) => (MoreauJean::step, entry::<EVERY>),
-        (Kernel::Split, PLAIN) => (Split::<PLAIN>::step, entry::<PLAIN>),
-        (Kernel::Split, CURVED) => (Split::<CURVED>::step, entry::<CURVED>),
-        (Kernel::Split, EVERY) => (Split::<EVERY>::step, entry::<EVERY>),
-        (Kernel::Split, _) => (Elastic::step, entry::<EVERY>),
-    };
+    let step = choose(kernel, body.effects(), OneStep);
+    let booked: Booker = booker(body.effects());
     let body = body.pure();
     let mut carried = Carried::NONE;
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));

@@ -6,10 +6,11 @@ use super::drive::Drive;
 use super::inside::Inside;
 use super::lane_drives::{BlockDrives, Spans};
 use super::lanes::{Drives, Kernel, LOOK, Part};
-use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State};
+use super::ledger::TAME;
+use super::march::{Advance, Elastic, Lanes, MoreauJean, Split, State, WHOLE};
 use super::number::Pure;
 use super::observe::Samples;
-use super::one_mass::{CURVED, EVERY, PLAIN};
+use super::one_mass::{EVERY, PLAIN, WAVY};
 
 /// One block of `N` lanes, the same steps with the same bits as [`super::lanes::Task`].
 pub(super) struct Watched<'a, const INSIDE: bool, const N: usize>(pub Part<'a>);
@@ -19,12 +20,13 @@ impl<const INSIDE: bool, const N: usize> WithSimd for Watched<'_, INSIDE, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        // Fewer kernels than without a look inside: there the look is what costs.
         match (self.0.kernel, self.0.effects) {
             (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
             (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
-            (Kernel::Split, CURVED) => self.along::<Split<CURVED>>(),
-            (Kernel::Split, EVERY) => self.along::<Split<EVERY>>(),
-            (Kernel::Split, _) => self.along::<Elastic>(),
+            (Kernel::Split, 1..WAVY) => self.along::<Split<TAME>>(),
+            (Kernel::Split, WAVY..=EVERY) => self.along::<Split<EVERY>>(),
+            (Kernel::Split, _) => self.along::<Elastic<WHOLE>>(),
         }
     }
 }
