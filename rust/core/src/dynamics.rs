@@ -28,6 +28,7 @@ mod moreau;
 mod number;
 mod observe;
 mod one_mass;
+pub mod oracle;
 mod parameters;
 mod split;
 mod tile;

@@ -1,0 +1,272 @@
+//! From event to event.
+
+use crate::Error;
+use crate::error::{require_finite, require_same_length};
+
+use super::super::events::EventKind;
+use super::super::lanes::Start;
+use super::crossing::first_crossing;
+use super::mode::{Mode, State, Stretch};
+use super::series::Series;
+use super::signal::{Instant, Signal};
+use super::system::System;
+
+/// One event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExactEvent {
+    /// When.
+    pub time_s: f64,
+    /// What happened.
+    pub kind: EventKind,
+    /// Of the body for stick, slip and reversal, of the spring for contact and release.
+    pub element: usize,
+    /// Direction of the sliding that follows, or of the side that touches; 0 where the body stays.
+    pub direction: i8,
+    /// Angle of the body, or of the spring's driven end less its other end.
+    pub angle: f64,
+}
+
+/// What [`exact`] returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exact {
+    /// Angles at the times asked for, body by body.
+    pub angle: Vec<Vec<f64>>,
+    /// Speeds.
+    pub speed: Vec<Vec<f64>>,
+    /// What happened, in order.
+    pub events: Vec<ExactEvent>,
+}
+
+/// What ends a mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    /// A sliding body comes to rest on its ground.
+    Rest(usize),
+    /// The torque on a held body passes its limit to a side.
+    Slip(usize, i8),
+    /// The spring's end reaches the edge of the gap, from inside to a side or from a side.
+    Gap(usize, i8),
+}
+
+/// Runs a mechanism from `times_s[0]` and returns it at the times.
+///
+/// # Errors
+/// [`Error::Length`] where there are not as many starts as bodies, or no time; [`Error::NonFinite`];
+/// [`Error::OutOfRange`] for times that decrease; [`Error::TooMany`] beyond `most_events`.
+pub fn exact(
+    system: &System,
+    starts: &[Start],
+    times_s: &[f64],
+    most_events: usize,
+) -> Result<Exact, Error> {
+    let first = check(system, starts, times_s)?;
+    let mut now = Instant::at(first);
+    let mut state = State {
+        angle: starts.iter().map(|s| s.phi).collect(),
+        speed: starts.iter().map(|s| s.speed).collect(),
+    };
+    let mut mode = Mode::of(system, now, &state);
+    let mut out = Exact {
+        angle: vec![Vec::with_capacity(times_s.len()); starts.len()],
+        speed: vec![Vec::with_capacity(times_s.len()); starts.len()],
+        events: Vec::new(),
+    };
+    let last = times_s[times_s.len() - 1];
+    let mut told = 0;
+    let mut just = None;
+    while now.until(last) > 0.0 {
+        let breaks = system.signals().filter_map(|s: &Signal| s.next_break(now));
+        let stop = breaks.fold(last, f64::min);
+        let to_stop = now.until(stop);
+        let length = to_stop.min(1.0 / mode.rate_rad_s());
+        let stretch = mode.stretch(now, &state);
+        let end = first_end(system, &mode, &stretch, length, just);
+        let reached = end.map_or(length, |(seconds, _)| seconds);
+        while told < times_s.len() && now.until(times_s[told]) < reached {
+            let then = stretch.state(&mode, now.until(times_s[told]));
+            out.tell(&then);
+            told += 1;
+        }
+        state = stretch.state(&mode, reached);
+        if !state
+            .angle
+            .iter()
+            .chain(&state.speed)
+            .all(|v| v.is_finite())
+        {
+            return Err(Error::Unrepresentable { name: "motion" });
+        }
+        now = if end.is_none() && length == to_stop {
+            Instant::at(stop)
+        } else {
+            now.after(reached)
+        };
+        just = end.map(|(_, end)| end);
+        if let Some(end) = just {
+            if out.events.len() == most_events {
+                return Err(Error::TooMany {
+                    what: "events",
+                    most: most_events,
+                    time_s: now.hi,
+                });
+            }
+            let event = apply(system, &mut mode, now, &mut state, end);
+            out.events.push(event);
+        }
+    }
+    for _ in told..times_s.len() {
+        out.tell(&state);
+    }
+    Ok(out)
+}
+
+impl Exact {
+    fn tell(&mut self, state: &State) {
+        for (column, value) in self.angle.iter_mut().zip(&state.angle) {
+            column.push(*value);
+        }
+        for (column, value) in self.speed.iter_mut().zip(&state.speed) {
+            column.push(*value);
+        }
+    }
+}
+
+fn check(system: &System, starts: &[Start], times_s: &[f64]) -> Result<f64, Error> {
+    let angles: Vec<f64> = starts.iter().map(|s| s.phi).collect();
+    let speeds: Vec<f64> = starts.iter().map(|s| s.speed).collect();
+    require_same_length("start", &angles, "inertia", system.count())?;
+    require_finite("start_rad", &angles)?;
+    require_finite("start_speed_rad_s", &speeds)?;
+    require_finite("times_s", times_s)?;
+    if let Some(pair) = times_s.windows(2).find(|pair| pair[1] < pair[0]) {
+        return Err(Error::OutOfRange {
+            name: "times_s",
+            value: pair[1],
+            interval: format!("[{}, inf): times do not decrease", pair[0]),
+        });
+    }
+    times_s.first().copied().ok_or(Error::Length {
+        name: "times_s",
+        expected: "at least 1".to_owned(),
+        got: 0,
+    })
+}
+
+/// What ends the mode first within a stretch, and after how many seconds.
+fn first_end(
+    system: &System,
+    mode: &Mode,
+    stretch: &Stretch,
+    length: f64,
+    just: Option<End>,
+) -> Option<(f64, End)> {
+    let mut first: Option<(f64, End)> = None;
+    let mut consider = |series: &Series, end: End| {
+        let within = first.map_or(length, |(seconds, _)| seconds);
+        if let Some(seconds) = first_crossing(series, within)
+            && first.is_none_or(|(earliest, _)| seconds < earliest)
+        {
+            first = Some((seconds, end));
+        }
+    };
+    for (i, body) in system.bodies.iter().enumerate() {
+        let way = mode.way[i];
+        if way == 0 {
+            for (side, forward) in [(0, 1_i8), (1, -1)] {
+                let mut left = Series::ZERO;
+                left.add(0, &[body.held[side]]);
+                left.add_times(-f64::from(forward), &stretch.torque[i]);
+                consider(&left, End::Slip(i, forward));
+            }
+            continue;
+        }
+        let mut sliding = Series::ZERO;
+        sliding.add_times(f64::from(way), &stretch.angle[i].rate());
+        if body.ground_speed != 0.0 {
+            sliding.add(0, &[-f64::from(way) * body.ground_speed]);
+        }
+        if just == Some(End::Slip(i, way)) {
+            // The instant of a break-away is that at which the limit was reached: its rounding must not stop the body.
+            let side = usize::from(way < 0);
+            let least = (body.held[side] - body.kinetic[side]) / body.inertia;
+            sliding.value[0] = 0.0;
+            sliding.value[1] = sliding.value[1].max(least);
+        }
+        consider(&sliding, End::Rest(i));
+    }
+    for (j, spring) in system.springs.iter().enumerate() {
+        if spring.half_gap == 0.0 {
+            continue;
+        }
+        let fresh = matches!(just, Some(End::Gap(k, _)) if k == j);
+        let side = mode.contact[j];
+        let towards: &[i8] = if side == 0 { &[1, -1] } else { &[side] };
+        for &way in towards {
+            let mut left = Series::ZERO;
+            // Inside the gap: what is left to its edge. Beyond: what is left to return to it.
+            let inward = if side == 0 { -1.0 } else { 1.0 };
+            left.add(0, &[-inward * spring.half_gap]);
+            left.add_times(inward * f64::from(way), &stretch.wound[j]);
+            if fresh && left.value[0].abs() < spring.half_gap {
+                // It stands on the edge that it has just passed.
+                left.value[0] = left.value[0].max(0.0);
+            }
+            consider(&left, End::Gap(j, way));
+        }
+    }
+    first
+}
+
+/// Changes the mode, and the state where it is known exactly.
+fn apply(
+    system: &System,
+    mode: &mut Mode,
+    now: Instant,
+    state: &mut State,
+    end: End,
+) -> ExactEvent {
+    let (element, kind, direction) = match end {
+        End::Gap(j, side) => {
+            let opened = mode.contact[j] != 0;
+            mode.contact[j] = if opened { 0 } else { side };
+            let kind = if opened {
+                EventKind::Release
+            } else {
+                EventKind::Contact
+            };
+            (j, kind, side)
+        }
+        End::Slip(i, way) => {
+            mode.way[i] = way;
+            (i, EventKind::Slip, way)
+        }
+        End::Rest(i) => {
+            mode.way[i] = 0;
+            mode.assemble();
+            state.speed[i] = system.bodies[i].ground_speed;
+            let torque = &mode.stretch(now, state).torque[i];
+            let (value, noise) = (torque.value[0], torque.noise());
+            let [forward, backward] = system.bodies[i].held;
+            mode.way[i] = i8::from(value > forward + noise) - i8::from(value < -backward - noise);
+            let kind = if mode.way[i] == 0 {
+                EventKind::Stick
+            } else {
+                EventKind::Reversal
+            };
+            (i, kind, mode.way[i])
+        }
+    };
+    mode.assemble();
+    let angle = if matches!(end, End::Gap(..)) {
+        mode.stretch(now, state).wound[element].value[0]
+    } else {
+        state.angle[element]
+    };
+    ExactEvent {
+        time_s: now.hi,
+        kind,
+        element,
+        direction,
+        angle,
+    }
+}
