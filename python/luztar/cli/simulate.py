@@ -24,6 +24,7 @@ def run_simulate(
     rate: float,
     out: str | None,
     report: str | None,
+    study: str | None,
     json: bool,
     mapped: list[str],
     units: list[str],
@@ -33,6 +34,14 @@ def run_simulate(
     from ..freerun.run_model import parameters_given, run_model
 
     check_place(report, [model, *runs])
+    if study is not None:
+        if report is not None:
+            raise ParameterError("a page shows single runs", "--report", "Give --out for the table of all lanes.")
+        from .monte_carlo import run_monte_carlo
+
+        drives = _drives(runs, sine, seconds, rate, mapped, units, resample)
+        place = _places(out, ["lanes"], [model, study, *runs])[0]
+        return run_monte_carlo(model, study, drives, place, json)
     start_from = find_model(model)
     given = parameters_given(start_from)
     drives = _drives(runs, sine, seconds, rate, mapped, units, resample)

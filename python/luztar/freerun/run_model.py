@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +17,8 @@ from .parameters import keys_of
 
 # As in fits: an error of 4e-5 in the frequency of the mechanism's own oscillation.
 STEPS_PER_RADIAN = 30.0
+# More than this asks for is a mistake in a parameter, which is refused by name where it is used.
+MOST_SUBSTEPS = 1e6
 # An aligning torque and an effect that the model does not hold are nothing.
 OPTIONAL = ("steering.aligning_nm_per_rad",)
 
@@ -39,6 +42,18 @@ def parameters_given(model: Model) -> dict[str, float]:
     return {key: given[key] for key in keys_of(model) if key in given}
 
 
+def substeps_for(physical: Mapping[str, Any], handwheel_rad: np.ndarray, sample_rate_hz: float) -> int:
+    """Return the sub-steps that the stiffest of one or many mechanisms asks for; 1 where there is no sense in any."""
+    k3 = np.maximum(physical.get("hardening.coefficient_nm_per_rad3", 0.0), 0.0)
+    tangent = physical["steering.stiffness_nm_per_rad"] + 3.0 * k3 * float(np.abs(handwheel_rad).max()) ** 2
+    springs = physical["steering.ratio"] ** 2 * tangent + physical.get("steering.aligning_nm_per_rad", 0.0)
+    # What is negative or 0 is refused by name where it is used.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        highest = float(np.max(np.sqrt(springs / physical["steering.inertia_kg_m2"])))
+    steps = STEPS_PER_RADIAN * highest / sample_rate_hz
+    return max(1, math.ceil(steps)) if math.isfinite(steps) and steps <= MOST_SUBSTEPS else 1
+
+
 def run_model(model: Model, handwheel_rad: Any, *, sample_rate_hz: float) -> Trace:
     """Run a steering model along a handwheel angle, sensor effects included.
 
@@ -60,11 +75,7 @@ def run_model(model: Model, handwheel_rad: Any, *, sample_rate_hz: float) -> Tra
     given = parameters_given(model)
     psi = vector("handwheel_rad", handwheel_rad, minimum=2)
     physical = {k: v for k, v in given.items() if k in COLUMNS}
-    k3 = max(physical.get("hardening.coefficient_nm_per_rad3", 0.0), 0.0)
-    tangent = physical["steering.stiffness_nm_per_rad"] + 3.0 * k3 * float(np.abs(psi).max()) ** 2
-    springs = physical["steering.ratio"] ** 2 * tangent + physical.get("steering.aligning_nm_per_rad", 0.0)
-    highest = math.sqrt(springs / physical["steering.inertia_kg_m2"])
-    substeps = max(1, math.ceil(STEPS_PER_RADIAN * highest / sample_rate_hz))
+    substeps = substeps_for(physical, psi, sample_rate_hz)
     made = trace(physical, psi, sample_rate_hz=sample_rate_hz, substeps=substeps)
     late, shift = given.get("delay.time_s", 0.0), given.get("offset.level_rad", 0.0)
     if late == 0.0 and shift == 0.0:
