@@ -288,3 +288,20 @@ def test_slow_motion_is_the_play_of_half_gap_and_friction():
     assert distance(0.05) == pytest.approx(9.2e-2, rel=0.05)
     assert distance(5e-4) == pytest.approx(limit, rel=1e-3)
     assert distance(5e-6) == pytest.approx(limit, rel=1e-5)
+
+
+@pytest.mark.parametrize("beyond", [1e-4, 1e-8, 1e-12])
+def test_no_event_is_too_short_and_none_is_made_up(beyond):
+    # A swing of 1 whose crests reach beyond the edge of a gap for 2 acos(1 - beyond) of a second, 2.8e-6 s at 1e-12: a
+    # gap without a spring is a detector.
+    crests, start = 40, {"start_rad": math.cos(0.5), "start_speed_rad_s": math.sin(0.5)}
+    for edge, hits in ((1.0 - beyond, crests), (1.0 + beyond, 0)):
+        run = exact(body(aligning=1.0, gap=2.0 * edge), 0.0, [0.0, (crests - 0.25) * math.pi], **start)
+        contacts = [e for e in run.events if e.kind == "contact"]
+        releases = [e for e in run.events if e.kind == "release"]
+        assert len(contacts) == len(releases) == hits
+        for n, (on, off) in enumerate(zip(contacts, releases, strict=True)):
+            # A swing of 1 ulp more or less moves the edge's time by that over the slope there.
+            allowed = (n + 4) * 2.0**-50 / math.sqrt(beyond)
+            assert on.time_s == pytest.approx(0.5 + n * math.pi - math.acos(edge), abs=allowed)
+            assert off.time_s == pytest.approx(0.5 + n * math.pi + math.acos(edge), abs=allowed)

@@ -1,5 +1,8 @@
 """What goes into the oracle: drives that are what they say, and errors that name the culprit."""
 
+import signal
+import time
+
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -122,3 +125,17 @@ def test_bodies_that_cannot_be_are_refused_by_name(change, culprit):
     with pytest.raises(ParameterError) as caught:
         exact_bodies(**arguments)
     assert caught.value.where == culprit
+
+
+def test_a_long_run_hears_an_interrupt():
+    # A minute of computing, interrupted after a fifth of a second.
+    before = time.perf_counter()
+    signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            exact(body(stiffness=1.0), 0.0, [0.0, 1e8], start_rad=1.0, most_events=10**9)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    assert time.perf_counter() - before < 5.0

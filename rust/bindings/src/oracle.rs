@@ -1,11 +1,14 @@
 //! `luztar._core.solve_steering_exactly`, `solve_bodies_exactly`: the event-driven oracle.
 
-use luztar::dynamics::oracle::{Body, Exact, Signal, Spring, System, exact};
-use luztar::dynamics::{OneMass, PARAMETERS, Start};
+use luztar::dynamics::oracle::{Body, Exact, Run, Signal, Spring, System};
+use luztar::dynamics::{PARAMETERS, Start};
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::error::CoreError;
+
+/// Stretches between two looks for an interrupt: some tens of milliseconds.
+const PULSE: usize = 4096;
 
 /// Breaks (m), coefficients (m, 4), sines (k, 3).
 type SignalParts<'py> = (
@@ -58,9 +61,8 @@ pub fn solve_steering_exactly<'py>(
             got: values.len(),
         })
     })?;
-    let body = OneMass::from_array(values).map_err(CoreError)?;
     let (handwheel, load) = (signal(&handwheel)?, signal(&load)?);
-    let system = System::one_mass(&body, handwheel, load, ground_speed).map_err(CoreError)?;
+    let system = System::one_mass(values, handwheel, load, ground_speed).map_err(CoreError)?;
     solved(py, &system, &[start], times_s.as_slice()?, most_events)
 }
 
@@ -126,13 +128,15 @@ fn solved<'py>(
         .iter()
         .map(|&(phi, speed)| Start { phi, speed })
         .collect();
+    let mut run = Run::new(system, &starts, times_s, most_events).map_err(CoreError)?;
+    while !py.detach(|| run.advance(PULSE)).map_err(CoreError)? {
+        py.check_signals()?;
+    }
     let Exact {
         angle,
         speed,
         events,
-    } = py
-        .detach(|| exact(system, &starts, times_s, most_events))
-        .map_err(CoreError)?;
+    } = run.finish();
     let events = events
         .iter()
         .map(|e| (e.time_s, e.kind.word(), e.direction, e.element, e.angle))

@@ -15,6 +15,6 @@ mod series;
 mod signal;
 mod system;
 
-pub use run::{Exact, ExactEvent, exact};
+pub use run::{Exact, ExactEvent, Run, exact};
 pub use signal::Signal;
 pub use system::{Body, Spring, System};

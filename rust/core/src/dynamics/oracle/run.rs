@@ -51,73 +51,135 @@ enum End {
 /// Runs a mechanism from `times_s[0]` and returns it at the times.
 ///
 /// # Errors
-/// [`Error::Length`] where there are not as many starts as bodies, or no time; [`Error::NonFinite`];
-/// [`Error::OutOfRange`] for times that decrease; [`Error::TooMany`] beyond `most_events`.
+/// Those of [`Run::new`] and [`Run::advance`].
 pub fn exact(
     system: &System,
     starts: &[Start],
     times_s: &[f64],
     most_events: usize,
 ) -> Result<Exact, Error> {
-    let first = check(system, starts, times_s)?;
-    let mut now = Instant::at(first);
-    let mut state = State {
-        angle: starts.iter().map(|s| s.phi).collect(),
-        speed: starts.iter().map(|s| s.speed).collect(),
-    };
-    let mut mode = Mode::of(system, now, &state);
-    let mut out = Exact {
-        angle: vec![Vec::with_capacity(times_s.len()); starts.len()],
-        speed: vec![Vec::with_capacity(times_s.len()); starts.len()],
-        events: Vec::new(),
-    };
-    let last = times_s[times_s.len() - 1];
-    let mut told = 0;
-    let mut just = None;
-    while now.until(last) > 0.0 {
+    let mut run = Run::new(system, starts, times_s, most_events)?;
+    while !run.advance(usize::MAX)? {}
+    Ok(run.finish())
+}
+
+/// A run that can be advanced a little at a time, so that the caller may look up in between.
+#[derive(Debug)]
+pub struct Run<'a> {
+    system: &'a System,
+    times_s: &'a [f64],
+    most_events: usize,
+    now: Instant,
+    state: State,
+    mode: Mode<'a>,
+    /// What has just ended the mode before.
+    just: Option<End>,
+    out: Exact,
+}
+
+impl<'a> Run<'a> {
+    /// A run from `times_s[0]`.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where there are not as many starts as bodies, or no time; [`Error::NonFinite`];
+    /// [`Error::OutOfRange`] for times that decrease.
+    pub fn new(
+        system: &'a System,
+        starts: &[Start],
+        times_s: &'a [f64],
+        most_events: usize,
+    ) -> Result<Self, Error> {
+        let now = Instant::at(check(system, starts, times_s)?);
+        let state = State {
+            angle: starts.iter().map(|s| s.phi).collect(),
+            speed: starts.iter().map(|s| s.speed).collect(),
+        };
+        let columns = vec![Vec::with_capacity(times_s.len()); starts.len()];
+        Ok(Self {
+            system,
+            times_s,
+            most_events,
+            now,
+            mode: Mode::of(system, now, &state),
+            state,
+            just: None,
+            out: Exact {
+                angle: columns.clone(),
+                speed: columns,
+                events: Vec::new(),
+            },
+        })
+    }
+
+    /// Goes on for at most so many stretches; whether the last time is reached.
+    ///
+    /// # Errors
+    /// [`Error::TooMany`] beyond the events allowed, [`Error::Unrepresentable`] where the motion grows without bound.
+    pub fn advance(&mut self, stretches: usize) -> Result<bool, Error> {
+        let last = self.times_s[self.times_s.len() - 1];
+        for _ in 0..stretches {
+            if self.now.until(last) <= 0.0 {
+                return Ok(true);
+            }
+            self.stretch(last)?;
+        }
+        Ok(false)
+    }
+
+    /// What was told at the times; those that were not reached bear the last state.
+    #[must_use]
+    pub fn finish(mut self) -> Exact {
+        for _ in self.told()..self.times_s.len() {
+            self.out.tell(&self.state);
+        }
+        self.out
+    }
+
+    /// How many of the times have been told.
+    fn told(&self) -> usize {
+        self.out.angle[0].len()
+    }
+
+    /// One stretch: to the next event, break of a drive or end of what the series can tell.
+    fn stretch(&mut self, last: f64) -> Result<(), Error> {
+        let (system, now) = (self.system, self.now);
         let breaks = system.signals().filter_map(|s: &Signal| s.next_break(now));
         let stop = breaks.fold(last, f64::min);
         let to_stop = now.until(stop);
-        let length = to_stop.min(1.0 / mode.rate_rad_s());
-        let stretch = mode.stretch(now, &state);
-        let end = first_end(system, &mode, &stretch, length, just);
+        let length = to_stop.min(1.0 / self.mode.rate_rad_s());
+        let stretch = self.mode.stretch(now, &self.state);
+        let end = first_end(system, &self.mode, &stretch, length, self.just);
         let reached = end.map_or(length, |(seconds, _)| seconds);
-        while told < times_s.len() && now.until(times_s[told]) < reached {
-            let then = stretch.state(&mode, now.until(times_s[told]));
-            out.tell(&then);
-            told += 1;
-        }
-        state = stretch.state(&mode, reached);
-        if !state
-            .angle
-            .iter()
-            .chain(&state.speed)
-            .all(|v| v.is_finite())
+        while let Some(time_s) = self.times_s.get(self.told())
+            && now.until(*time_s) < reached
         {
+            self.out
+                .tell(&stretch.state(&self.mode, now.until(*time_s)));
+        }
+        self.state = stretch.state(&self.mode, reached);
+        let mut values = self.state.angle.iter().chain(&self.state.speed);
+        if !values.all(|v| v.is_finite()) {
             return Err(Error::Unrepresentable { name: "motion" });
         }
-        now = if end.is_none() && length == to_stop {
+        self.now = if end.is_none() && length == to_stop {
             Instant::at(stop)
         } else {
             now.after(reached)
         };
-        just = end.map(|(_, end)| end);
-        if let Some(end) = just {
-            if out.events.len() == most_events {
+        self.just = end.map(|(_, end)| end);
+        if let Some(end) = self.just {
+            if self.out.events.len() == self.most_events {
                 return Err(Error::TooMany {
                     what: "events",
-                    most: most_events,
-                    time_s: now.hi,
+                    most: self.most_events,
+                    time_s: self.now.hi,
                 });
             }
-            let event = apply(system, &mut mode, now, &mut state, end);
-            out.events.push(event);
+            let event = apply(system, &mut self.mode, self.now, &mut self.state, end);
+            self.out.events.push(event);
         }
+        Ok(())
     }
-    for _ in told..times_s.len() {
-        out.tell(&state);
-    }
-    Ok(out)
 }
 
 impl Exact {

@@ -3,8 +3,22 @@
 use crate::Error;
 use crate::error::require_same_length;
 
-use super::super::one_mass::OneMass;
+use super::super::{NAMES, OneMass, PARAMETERS};
 use super::signal::Signal;
+
+/// The parameters of the one-mass model whose laws are piecewise linear.
+const PIECEWISE_LINEAR: [&str; 10] = [
+    "inertia_kg_m2",
+    "ratio",
+    "stiffness_nm_per_rad",
+    "aligning_nm_per_rad",
+    "gap_rad",
+    "viscous_nm_s_per_rad",
+    "asymmetric_viscous_nm_s_per_rad",
+    "coulomb_nm",
+    "asymmetric_coulomb_nm",
+    "stiction_nm",
+];
 
 /// One body and the friction on its own coordinate.
 ///
@@ -90,22 +104,20 @@ impl System {
         })
     }
 
-    /// The steering model of one mass, its friction on a ground of constant speed.
+    /// The steering model of one mass, its parameters in the order of [`NAMES`], its friction on a ground of constant
+    /// speed.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for what is not piecewise linear: Stribeck friction, drag, hardening.
+    /// Those of [`OneMass::from_array`], and [`Error::OutOfRange`] for what is not piecewise linear.
     pub fn one_mass(
-        body: &OneMass<f64>,
+        values: &[f64; PARAMETERS],
         handwheel: Signal,
         load: Signal,
         ground_speed: f64,
     ) -> Result<Self, Error> {
-        for (name, value) in [
-            ("hardening_nm_per_rad3", body.hardening),
-            ("drag_nm_s2_per_rad2", body.drag),
-            ("stribeck_nm", body.stribeck),
-        ] {
-            if value != 0.0 {
+        let body = OneMass::from_array(values)?;
+        for (name, &value) in NAMES.into_iter().zip(values) {
+            if value != 0.0 && !PIECEWISE_LINEAR.contains(&name) {
                 return Err(Error::OutOfRange {
                     name,
                     value,
