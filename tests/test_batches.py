@@ -248,7 +248,9 @@ def test_a_wrong_option_is_named(options, word):
         summarise(lanes(3), psi(), **{**RATE, **options})
 
 
-def test_one_wrong_lane_of_many_is_named_before_any_runs():
+def test_one_wrong_lane_of_many_is_named_before_any_runs(monkeypatch):
+    for name in ("LEAST_LANES", "MOST_LANES"):
+        monkeypatch.setattr(f"luztar.dynamics.batch_inputs.{name}", 16)
     given = lanes(LANES)
     given["coulomb.level_nm"][41] = -1.0
     told = []

@@ -45,6 +45,7 @@ __all__ = [
     "solve_block",
     "solve_bodies_exactly",
     "solve_steering_exactly",
+    "steering_highest_rad_s",
     "steering_parameters",
     "theil_sen",
     "trace_steering",
@@ -439,6 +440,9 @@ def held_out(
 # dynamics
 
 def steering_parameters() -> list[str]: ...
+def steering_highest_rad_s(
+    parameters: NDArray[np.float64], wound_rad: float, first: int = 0
+) -> NDArray[np.float64]: ...
 def simulate_steering(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
@@ -464,6 +468,7 @@ def check_lanes(
     sample_rate_hz: float,
     substeps: int,
     method: str,
+    first: int,
 ) -> None: ...
 def run_lanes(
     parameters: NDArray[np.float64],

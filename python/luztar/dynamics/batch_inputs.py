@@ -76,6 +76,7 @@ class Inputs:
                 sample_rate_hz=self.rate_hz,
                 substeps=self.substeps,
                 method=method,
+                first=first,
             )
 
     def digest(self, *more: object) -> str:

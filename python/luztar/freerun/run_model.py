@@ -9,16 +9,19 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from .._arrays import vector
 from ..dynamics import COLUMNS, Trace, trace
+from ..dynamics.lanes import columns, rows
 from ..errors import ModelError
 from ..model import Model
 from .parameters import keys_of
 
 # As in fits: an error of 4e-5 in the frequency of the mechanism's own oscillation.
 STEPS_PER_RADIAN = 30.0
-# More than this asks for is a mistake in a parameter, which is refused by name where it is used.
 MOST_SUBSTEPS = 1e6
+# A few thousand rows of the core: memory does not grow with the lanes.
+LANES_AT_ONCE = 4096
 # An aligning torque and an effect that the model does not hold are nothing.
 OPTIONAL = ("steering.aligning_nm_per_rad",)
 
@@ -43,15 +46,22 @@ def parameters_given(model: Model) -> dict[str, float]:
 
 
 def substeps_for(physical: Mapping[str, Any], handwheel_rad: np.ndarray, sample_rate_hz: float) -> int:
-    """Return the sub-steps that the stiffest of one or many mechanisms asks for; 1 where there is no sense in any."""
-    k3 = np.maximum(physical.get("hardening.coefficient_nm_per_rad3", 0.0), 0.0)
-    tangent = physical["steering.stiffness_nm_per_rad"] + 3.0 * k3 * float(np.abs(handwheel_rad).max()) ** 2
-    springs = physical["steering.ratio"] ** 2 * tangent + physical.get("steering.aligning_nm_per_rad", 0.0)
-    # What is negative or 0 is refused by name where it is used.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        highest = float(np.max(np.sqrt(springs / physical["steering.inertia_kg_m2"])))
+    """Return the sub-steps that the stiffest of one or many mechanisms asks for.
+
+    Raises
+    ------
+    ParameterError
+        A mechanism that makes no sense, named.
+    """
+    given = columns(physical)
+    lanes = max(a.size for a in given.values())
+    wound, highest = float(np.abs(handwheel_rad).max()), 0.0
+    for first in range(0, lanes, LANES_AT_ONCE):
+        part = rows(given, np.arange(first, min(first + LANES_AT_ONCE, lanes)))
+        highest = max(highest, float(np.max(_core.steering_highest_rad_s(part, wound, first))))
     steps = STEPS_PER_RADIAN * highest / sample_rate_hz
-    return max(1, math.ceil(steps)) if math.isfinite(steps) and steps <= MOST_SUBSTEPS else 1
+    # Where more would be needed, a step is refused with the name of the spring.
+    return max(1, math.ceil(min(steps, MOST_SUBSTEPS)))
 
 
 def run_model(model: Model, handwheel_rad: Any, *, sample_rate_hz: float) -> Trace:

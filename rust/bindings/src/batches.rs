@@ -77,9 +77,10 @@ pub fn lane_columns(
     keep(events, energy, window, chosen).columns(samples)
 }
 
-/// Refuses what [`run_lanes`] would refuse, without running.
+/// Refuses what [`run_lanes`] would refuse, without running; the rows are the lanes from `first` on.
 #[pyfunction]
-#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method))]
+#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, first))]
+#[allow(clippy::too_many_arguments)]
 pub fn check_lanes(
     parameters: PyReadonlyArray2<'_, f64>,
     starts: PyReadonlyArray2<'_, f64>,
@@ -88,8 +89,9 @@ pub fn check_lanes(
     sample_rate_hz: f64,
     substeps: usize,
     method: &str,
+    first: usize,
 ) -> PyResult<()> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, first)?;
     let starts = self::starts(&starts)?;
     let driven = Driven::new(
         bodies.len(),
@@ -98,7 +100,7 @@ pub fn check_lanes(
         sample_rate_hz,
         substeps,
     )?;
-    Ok(check(&bodies, &starts, driven.drives(), kernel(method)?).map_err(CoreError)?)
+    Ok(check(&bodies, &starts, driven.drives(), kernel(method)?, first).map_err(CoreError)?)
 }
 
 /// `rows` (lanes, values), `done` (lanes), `phi` and `speed` (lanes, samples), written; `told` is called with the lanes
@@ -129,7 +131,7 @@ pub fn run_lanes(
     mut speed: Option<PyReadwriteArray2<'_, f64>>,
     told: Option<Bound<'_, PyAny>>,
 ) -> PyResult<()> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, 0)?;
     let starts = self::starts(&starts)?;
     let load = load_nm.as_ref();
     let driven = Driven::new(bodies.len(), &handwheel_rad, load, sample_rate_hz, substeps)?;

@@ -26,6 +26,21 @@ pub fn steering_parameters() -> Vec<&'static str> {
     NAMES.to_vec()
 }
 
+/// The highest circular frequency of every row of `parameters`, rad/s, the column wound up by so much. Errors number
+/// the lanes from `first` on.
+#[pyfunction]
+#[pyo3(signature = (parameters, wound_rad, first=0))]
+pub fn steering_highest_rad_s<'py>(
+    py: Python<'py>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    wound_rad: f64,
+    first: usize,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let highest = |body: &OneMass<f64>| body.highest_frequency_rad_s(wound_rad);
+    let made: Vec<f64> = bodies(&parameters, first)?.iter().map(highest).collect();
+    Ok(made.into_pyarray(py))
+}
+
 /// `parameters` (lanes, names), `starts` (lanes, 2), `phi` and `speed` (lanes, samples), written.
 #[pyfunction]
 #[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, width, phi, speed))]
@@ -43,7 +58,7 @@ pub fn simulate_steering(
     mut phi: PyReadwriteArray2<'_, f64>,
     mut speed: Option<PyReadwriteArray2<'_, f64>>,
 ) -> PyResult<()> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, 0)?;
     let starts = self::starts(&starts)?;
     let psi = handwheel_rad.as_slice()?;
     let load = load_nm
@@ -82,7 +97,7 @@ pub fn trace_steering<'py>(
     substeps: usize,
     method: &str,
 ) -> PyResult<TraceParts<'py>> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, 0)?;
     let [body] = bodies[..] else {
         return Err(CoreError(luztar::Error::Length {
             name: "parameters",
@@ -131,7 +146,8 @@ pub fn trace_steering<'py>(
     ))
 }
 
-pub fn bodies(parameters: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<OneMass<f64>>> {
+/// The bodies of rows, which are the lanes from `first` on.
+pub fn bodies(parameters: &PyReadonlyArray2<'_, f64>, first: usize) -> PyResult<Vec<OneMass<f64>>> {
     if parameters.shape()[1] != PARAMETERS {
         return Err(CoreError(luztar::Error::Length {
             name: "parameters",
@@ -141,12 +157,12 @@ pub fn bodies(parameters: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<OneMass<f6
         .into());
     }
     let (rows, _) = parameters.as_slice()?.as_chunks::<PARAMETERS>();
-    let many = rows.len() > 1;
+    let many = first + rows.len() > 1;
     let made: Result<Vec<_>, _> = rows
         .iter()
         .enumerate()
         .map(|(lane, row)| {
-            OneMass::from_array(row).map_err(|e| if many { of_lane(e, lane) } else { e })
+            OneMass::from_array(row).map_err(|e| if many { of_lane(e, first + lane) } else { e })
         })
         .collect();
     Ok(made.map_err(CoreError)?)

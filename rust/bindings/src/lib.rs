@@ -27,7 +27,9 @@ mod _core {
     #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
-    use crate::dynamics::{simulate_steering, steering_parameters, trace_steering};
+    use crate::dynamics::{
+        simulate_steering, steering_highest_rad_s, steering_parameters, trace_steering,
+    };
     #[pymodule_export]
     use crate::effects::effect_cards;
     #[pymodule_export]

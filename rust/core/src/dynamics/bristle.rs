@@ -78,6 +78,47 @@ impl Bristle<Pure> {
     }
 }
 
+/// What acts in the middle of a step.
+struct Push {
+    /// Torque less dry friction.
+    net: Pure,
+    /// Friction state.
+    state: Pure,
+    /// The state as far as Stribeck's part goes with it.
+    side: Pure,
+}
+
+impl Push {
+    /// The damping of the deformation's rate is a viscous friction that fades as the state comes to its end.
+    #[inline(always)]
+    fn damping<const WITH: usize>(&self, body: &OneMass<Pure>, at_speed: Pure) -> Pure {
+        if WITH & LUGRE == 0 {
+            return Pure::ZERO;
+        }
+        let full = body.bristle.full::<WITH>(body, at_speed);
+        body.bristle.damping * (Pure::ONE - at_speed.side() * self.state / full)
+    }
+
+    /// The speed at the end of a step from `v`, with what depends on the speed taken at another.
+    #[inline(always)]
+    fn end<const WITH: usize>(
+        &self,
+        body: &OneMass<Pure>,
+        pace: Pace,
+        v: Pure,
+        at_speed: Pure,
+    ) -> Pure {
+        let damping = self.damping::<WITH>(body, at_speed);
+        let k = pace.rate * (body.linear(Pure::ONE) + damping) * Pure(0.5);
+        let curved = if WITH & CURVED == 0 {
+            Pure::ZERO
+        } else {
+            body.curved(at_speed, self.side)
+        };
+        (v * (Pure::ONE - k) + pace.rate * (self.net - curved)) / (Pure::ONE + k)
+    }
+}
+
 /// One sub-step of a body on an elastic contact: half a drift, the torque in the middle, the other half.
 #[inline(always)]
 pub(super) fn step<const WITH: usize>(
@@ -96,26 +137,10 @@ pub(super) fn step<const WITH: usize>(
     let net = body.torque::<WITH>(psi, load, middle) - dry;
     // Stribeck's part goes with the state; LuGre has it in the end of the state.
     let side = Pure::ZERO.when(bristle.lugre.0 > 0.0, state);
-    // The damping of the deformation's rate is a viscous friction that fades as the state comes to its end.
-    let damping = |at_speed: Pure| {
-        if WITH & LUGRE == 0 {
-            return Pure::ZERO;
-        }
-        bristle.damping
-            * (Pure::ONE - at_speed.side() * state / bristle.full::<WITH>(body, at_speed))
-    };
-    let end = |at_speed: Pure| {
-        let k = pace.rate * (body.linear(Pure::ONE) + damping(at_speed)) * half;
-        let curved = if WITH & CURVED == 0 {
-            Pure::ZERO
-        } else {
-            body.curved(at_speed, side)
-        };
-        (v * (Pure::ONE - k) + pace.rate * (net - curved)) / (Pure::ONE + k)
-    };
+    let push = Push { net, state, side };
     // What depends on the speed is predicted at the speed of the start, then taken at the middle.
-    let at_speed = (v + end(v)) * half;
-    let speed = end(at_speed);
+    let at_speed = (v + push.end::<WITH>(body, pace, v, v)) * half;
+    let speed = push.end::<WITH>(body, pace, v, at_speed);
     let phi_next = middle + drift * speed;
     let turns = (speed * v).0 < 0.0;
     let fall = (v - speed).when(turns, Pure::ONE);
@@ -127,7 +152,9 @@ pub(super) fn step<const WITH: usize>(
         stuck: Pure::ZERO,
         speed_turn: Pure::ZERO.when(turns, speed),
         // For the energies only: a lane's compiler leaves it out.
-        grip: dry + body.stribeck_torque(at_speed, side) + damping(at_speed) * (v + speed) * half,
+        grip: dry
+            + body.stribeck_torque(at_speed, side)
+            + push.damping::<WITH>(body, at_speed) * (v + speed) * half,
         carried: Carried {
             rest_s: Pure::ZERO,
             bristle: bristle.walk(state, phi_next - middle, bristle.full::<WITH>(body, speed)),

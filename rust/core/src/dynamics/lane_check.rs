@@ -5,7 +5,7 @@ use crate::Error;
 use super::lanes::{Drives, Kernel, Start};
 use super::one_mass::OneMass;
 
-/// Refuses what a batch of these lanes would refuse.
+/// Refuses what a batch of these lanes, numbered from `first` on, would refuse.
 ///
 /// # Errors
 /// [`Error::Length`] without lanes or where bodies and starts differ in number, [`Error::NonFinite`] for a start,
@@ -15,6 +15,7 @@ pub fn check_lanes(
     starts: &[Start],
     drives: Drives<'_>,
     kernel: Kernel,
+    first: usize,
 ) -> Result<(), Error> {
     let lanes = bodies.len();
     if lanes == 0 || starts.len() != lanes {
@@ -33,7 +34,7 @@ pub fn check_lanes(
             if !value.is_finite() {
                 return Err(Error::NonFinite {
                     name,
-                    index: lane,
+                    index: first + lane,
                     value,
                 });
             }
@@ -55,7 +56,7 @@ pub fn check_lanes(
             body,
             drives.step_s(),
             reach + body.ratio * start.phi.abs(),
-            lane,
+            first + lane,
         )?;
     }
     Ok(())

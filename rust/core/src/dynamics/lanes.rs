@@ -191,7 +191,7 @@ pub fn run_lanes(
             length(name, got, lanes * each)?;
         }
     }
-    check_lanes(batch.bodies, batch.starts, drives, batch.kernel)?;
+    check_lanes(batch.bodies, batch.starts, drives, batch.kernel, 0)?;
     let watched = keep.watches_steps() || matches!(drives, Drives::Own(_));
     // What is looked at inside of the steps costs more than small blocks do.
     let block = if watched { MEDIUM } else { block_for(lanes) };

@@ -28,7 +28,7 @@ pub(super) fn step(
     let slipped = up.when(up.0 > 0.0, down.when(down.0 < 0.0, Pure::ZERO));
     let next = slipped / (Pure::ONE + rate * body.linear(Pure::ONE));
     let held = body.held::<EVERY>(phi, load, rest_s + h);
-    let holds = (v.0 == 0.0) & (torque.abs_at_most(held.to(torque.sign())));
+    let holds = (v.0 == 0.0) & (torque.abs_at_most(held.to::<EVERY>(torque.sign())));
     let speed = Pure::ZERO.when(holds, next);
     let phi_next = phi + h * speed;
     Step {

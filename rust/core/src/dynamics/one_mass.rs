@@ -79,7 +79,10 @@ pub(super) struct Held {
 impl Held {
     /// To one side.
     #[inline(always)]
-    pub fn to(self, direction: Pure) -> Pure {
+    pub fn to<const WITH: usize>(self, direction: Pure) -> Pure {
+        if WITH & LOCAL == 0 {
+            return self.middle;
+        }
         self.middle + direction * self.difference
     }
 }

@@ -127,12 +127,23 @@ pub(super) fn stays<const WITH: usize>(
     (phi, v): (Pure, Pure),
     rest_s: Pure,
 ) -> bool {
-    let holds = |(psi, load): (Pure, Pure), rest_s: Pure| {
-        let torque = body.torque::<WITH>(psi, load, phi);
-        let held = body.held::<WITH>(phi, load, rest_s);
-        torque.abs_at_most(held.to(torque.sign()))
-    };
-    (v.0 == 0.0) & holds(span.start(), rest_s) & holds(span.end(), rest_s + h)
+    (v.0 == 0.0)
+        & holds::<WITH>(body, span.start(), phi, rest_s)
+        & holds::<WITH>(body, span.end(), phi, rest_s + h)
+}
+
+/// Whether friction holds a body under an angle of the handwheel and a load. No closure: one that is not inlined into
+/// the loop over the lanes would be called for each of them.
+#[inline(always)]
+fn holds<const WITH: usize>(
+    body: &OneMass<Pure>,
+    (psi, load): (Pure, Pure),
+    phi: Pure,
+    rest_s: Pure,
+) -> bool {
+    let torque = body.torque::<WITH>(psi, load, phi);
+    let held = body.held::<WITH>(phi, load, rest_s);
+    torque.abs_at_most(held.to::<WITH>(torque.sign()))
 }
 
 /// One sub-step of one body from (`phi`, `v`), at rest for `rest_s` if it is.
@@ -179,9 +190,9 @@ pub(super) fn resolve<const WITH: usize>(
     let held_end = body.held::<WITH>(phi_turn, load_end, rest_end);
     let side = at_end.sign();
     // By how much the torque is beyond what is held, to the side to which it is in the end.
-    let beyond_turn = at_turn * side - held_turn.to(side);
-    let beyond_end = at_end * side - held_end.to(side);
-    let breaks_now = at_turn.abs().0 > held_turn.to(at_turn.sign()).0;
+    let beyond_turn = at_turn * side - held_turn.to::<WITH>(side);
+    let beyond_end = at_end * side - held_end.to::<WITH>(side);
+    let breaks_now = at_turn.abs().0 > held_turn.to::<WITH>(at_turn.sign()).0;
     let breaks_later = !breaks_now & (beyond_end.0 > 0.0);
     let rise = (beyond_end - beyond_turn).when(breaks_later, Pure::ONE);
     let located = (-beyond_turn / rise).clamp(Pure::ZERO, Pure::ONE);

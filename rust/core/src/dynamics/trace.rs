@@ -65,7 +65,7 @@ pub fn trace(
     kernel: Kernel,
     drive: &Drive,
 ) -> Result<Trace, Error> {
-    check_lanes(&[*body], &[start], Drives::Shared(drive), kernel)?;
+    check_lanes(&[*body], &[start], Drives::Shared(drive), kernel, 0)?;
     let step = choose(kernel, body.effects(), OneStep);
     let booked: Booker = booker(body.effects());
     let body = body.pure();
