@@ -1,14 +1,18 @@
 """luztar simulate --monte-carlo: a row for each lane, bad studies named, an interrupt keeps what is done."""
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from command_line import luztar
+from luztar import Model
 from luztar.cli import main
 from luztar.dynamics import Uniform, sample, summarise
+from luztar.freerun.monte_carlo import MonteCarlo, draw
 from test_cli_simulate import MODEL
 
 STUDY = """schema = 1
@@ -76,6 +80,14 @@ def test_a_study_that_makes_no_sense_is_named(files, change, word, capsys):
     assert word in " ".join(capsys.readouterr().err.split())
 
 
+def test_the_study_on_the_page_can_be_drawn(files):
+    page = (Path(__file__).resolve().parents[1] / "docs" / "dynamics.md").read_text(encoding="utf-8")
+    (block,) = [b for b in re.findall(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL) if "lanes =" in b]
+    (files / "study.toml").write_text(block, encoding="utf-8")
+    drawn = draw(Model.load(files / "model.toml"), MonteCarlo.load(files / "study.toml"))
+    assert drawn["freeplay.gap_rad"].shape == (10_000,) and set(drawn["stiction.extra_nm"]) == {0.0, 4.0}
+
+
 def test_a_page_and_many_lanes_do_not_go_together(files):
     done = run(files, "--sine", 1, 1, "--report", files / "page.html")
     assert done.code == 3 and "--out" in done.err
@@ -84,6 +96,7 @@ def test_a_page_and_many_lanes_do_not_go_together(files):
 INTERRUPTED = """
 import _thread, sys, threading
 from luztar import _core
+from luztar import Model
 from luztar.cli import main
 run = _core.run_lanes
 def begun(*given, **options):

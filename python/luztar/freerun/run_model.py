@@ -19,7 +19,8 @@ from .parameters import keys_of
 
 # As in fits: an error of 4e-5 in the frequency of the mechanism's own oscillation.
 STEPS_PER_RADIAN = 30.0
-MOST_SUBSTEPS = 1e6
+# More than this is asked for by a mistake in a parameter: without them the step is refused with the spring's name.
+MOST_SUBSTEPS = 10_000
 # A few thousand rows of the core: memory does not grow with the lanes.
 LANES_AT_ONCE = 4096
 # An aligning torque and an effect that the model does not hold are nothing.
@@ -60,8 +61,7 @@ def substeps_for(physical: Mapping[str, Any], handwheel_rad: np.ndarray, sample_
         part = rows(given, np.arange(first, min(first + LANES_AT_ONCE, lanes)))
         highest = max(highest, float(np.max(_core.steering_highest_rad_s(part, wound, first))))
     steps = STEPS_PER_RADIAN * highest / sample_rate_hz
-    # Where more would be needed, a step is refused with the name of the spring.
-    return max(1, math.ceil(min(steps, MOST_SUBSTEPS)))
+    return max(1, math.ceil(steps)) if steps <= MOST_SUBSTEPS else 1
 
 
 def run_model(model: Model, handwheel_rad: Any, *, sample_rate_hz: float) -> Trace:

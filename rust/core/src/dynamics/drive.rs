@@ -23,6 +23,9 @@ pub struct Drive {
     step_s: f64,
 }
 
+/// Sub-steps of a record: both channels refined are 4 GiB.
+const MOST_STEPS: usize = 1 << 27;
+
 /// One channel over one sub-step: at its start, middle and end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parabola {
@@ -93,6 +96,17 @@ impl Drive {
     ) -> Result<Self, Error> {
         require_positive("sample_rate_hz", sample_rate_hz)?;
         let refinement = Refinement::new(substeps)?;
+        if handwheel_rad.len().saturating_mul(substeps) > MOST_STEPS {
+            return Err(Error::OutOfRange {
+                name: "substeps",
+                value: substeps as f64,
+                interval: format!(
+                    "[1, {}] for a record of {} samples",
+                    (MOST_STEPS / handwheel_rad.len()).max(1),
+                    handwheel_rad.len()
+                ),
+            });
+        }
         if handwheel_rad.len() < 2 {
             return Err(Error::Length {
                 name: "handwheel_rad",
