@@ -14,6 +14,8 @@ from .solve import Solution, solve_with
 
 # A Stribeck speed below this share of the road wheel's top speed is felt at rest only: it is stiction.
 SLOW_SHARE = 0.03
+# Over less than a turn of the handwheel a wave per turn and a spring are the same curve.
+WHOLE_TURN_RAD = 2.0 * np.pi
 # Static friction that has grown after this share of a usual rest does not show its growth: it is stiction.
 SHORT_SHARE = 0.2
 
@@ -49,10 +51,12 @@ class Candidate:
 def try_all(fitted: FreeFit, progress: Callable[[int, int], None] | None = None) -> list[Candidate]:
     """Return every candidate by its unseen loss, the best first."""
     model = fitted.model
+    turned = max(float(np.ptp(r.motion)) for r in fitted.runs)
     wanted = [
         c
         for c in cards(model.structure_name)
         if c.name not in model.effects
+        and (turned >= WHOLE_TURN_RAD or not c.per_turn)
         and c.is_searched_on(model.structure_name)
         and (c.needs is None or c.needs in model.effects)
         and not are_apart((*model.effects, c.name))
