@@ -89,7 +89,7 @@ fn halve(coefficients: &[f64; ORDER + 1]) -> ([f64; ORDER + 1], [f64; ORDER + 1]
 
 /// The zero just before an instant at which the series is below its noise; 0 where it was never above.
 fn zero_before(series: &Series, below: f64) -> f64 {
-    let mut step = 2.0 * f64::EPSILON * below;
+    let mut step = (2.0 * f64::EPSILON * below).max(f64::MIN_POSITIVE);
     let mut high = below;
     while high > 0.0 {
         let low = (below - step).max(0.0);

@@ -74,6 +74,8 @@ pub struct Run<'a> {
     mode: Mode<'a>,
     /// What has just ended the mode before.
     just: Option<End>,
+    /// The longest stretch so far, s.
+    longest: f64,
     out: Exact,
 }
 
@@ -103,6 +105,7 @@ impl<'a> Run<'a> {
             mode: Mode::of(system, now, &state),
             state,
             just: None,
+            longest: 0.0,
             out: Exact {
                 angle: columns.clone(),
                 speed: columns,
@@ -146,9 +149,12 @@ impl<'a> Run<'a> {
         let breaks = system.signals().filter_map(|s: &Signal| s.next_break(now));
         let stop = breaks.fold(last, f64::min);
         let to_stop = now.until(stop);
-        let length = to_stop.min(1.0 / self.mode.rate_rad_s());
+        let readable = 1.0 / self.mode.rate_rad_s();
+        let length = to_stop.min(readable);
         let stretch = self.mode.stretch(now, &self.state);
-        let end = first_end(system, &self.mode, &stretch, length, self.just);
+        let doubt = readable.min(self.longest);
+        let end = first_end(system, &self.mode, &stretch, (length, doubt), self.just);
+        self.longest = self.longest.max(length);
         let reached = end.map_or(length, |(seconds, _)| seconds);
         while let Some(time_s) = self.times_s.get(self.told())
             && now.until(*time_s) < reached
@@ -214,18 +220,19 @@ fn check(system: &System, starts: &[Start], times_s: &[f64]) -> Result<f64, Erro
     })
 }
 
-/// What ends the mode first within a stretch, and after how many seconds.
+/// What ends the mode first within a stretch, and after how many seconds; its start is in doubt by the rounding of some.
 fn first_end(
     system: &System,
     mode: &Mode,
     stretch: &Stretch,
-    length: f64,
+    (length, doubt): (f64, f64),
     just: Option<End>,
 ) -> Option<(f64, End)> {
     let mut first: Option<(f64, End)> = None;
-    let mut consider = |series: &Series, end: End| {
+    let mut consider = |mut series: Series, end: End| {
+        series.doubt(doubt);
         let within = first.map_or(length, |(seconds, _)| seconds);
-        if let Some(seconds) = first_crossing(series, within)
+        if let Some(seconds) = first_crossing(&series, within)
             && first.is_none_or(|(earliest, _)| seconds < earliest)
         {
             first = Some((seconds, end));
@@ -238,7 +245,7 @@ fn first_end(
                 let mut left = Series::ZERO;
                 left.add(0, &[body.held[side]]);
                 left.add_times(-f64::from(forward), &stretch.torque[i]);
-                consider(&left, End::Slip(i, forward));
+                consider(left, End::Slip(i, forward));
             }
             continue;
         }
@@ -254,7 +261,7 @@ fn first_end(
             sliding.value[0] = 0.0;
             sliding.value[1] = sliding.value[1].max(least);
         }
-        consider(&sliding, End::Rest(i));
+        consider(sliding, End::Rest(i));
     }
     for (j, spring) in system.springs.iter().enumerate() {
         if spring.half_gap == 0.0 {
@@ -273,7 +280,7 @@ fn first_end(
                 // It stands on the edge that it has just passed.
                 left.value[0] = left.value[0].max(0.0);
             }
-            consider(&left, End::Gap(j, way));
+            consider(left, End::Gap(j, way));
         }
     }
     first

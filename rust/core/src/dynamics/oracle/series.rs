@@ -65,6 +65,12 @@ impl Series {
         ROUNDINGS * f64::EPSILON * self.size[0]
     }
 
+    /// Takes it that the start may be off by the rounding of so many seconds: an event is placed within its stretch to
+    /// the rounding of the stretch, and what it set to 0 has moved since.
+    pub fn doubt(&mut self, seconds: f64) {
+        self.size[0] += self.size[1] * seconds;
+    }
+
     /// Its coefficients, each raised by its rounding error: what is below 0 then is so beyond doubt.
     pub fn raised_by_noise(&self) -> [f64; ORDER + 1] {
         let mut out = self.value;
