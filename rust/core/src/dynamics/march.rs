@@ -138,7 +138,9 @@ pub(super) const WHOLE: usize = EVERY | LUGRE;
 pub(super) fn choose<T: WithKernel>(kernel: Kernel, effects: usize, then: T) -> T::Output {
     const BOTH: usize = LOCAL | CURVED;
     match (kernel, effects) {
-        (Kernel::MoreauJean, _) => then.with::<MoreauJean>(),
+        (Kernel::MoreauJean, PLAIN | CURVED) => then.with::<MoreauJean<CURVED>>(),
+        (Kernel::MoreauJean, ..=BOTH) => then.with::<MoreauJean<BOTH>>(),
+        (Kernel::MoreauJean, _) => then.with::<MoreauJean<EVERY>>(),
         (_, PLAIN) => then.with::<Split<PLAIN>>(),
         (_, LOCAL) => then.with::<Split<LOCAL>>(),
         (_, CURVED) => then.with::<Split<CURVED>>(),
@@ -274,9 +276,9 @@ impl<const WITH: usize> Advance for Elastic<WITH> {
 }
 
 /// The step of Moreau and Jean.
-pub(super) struct MoreauJean;
+pub(super) struct MoreauJean<const WITH: usize>;
 
-impl Advance for MoreauJean {
+impl<const WITH: usize> Advance for MoreauJean<WITH> {
     #[inline(always)]
     fn step(
         body: &OneMass<Pure>,
@@ -285,7 +287,7 @@ impl Advance for MoreauJean {
         from: (Pure, Pure),
         carried: Carried,
     ) -> Step {
-        moreau::step(body, span, pace, from, carried.rest_s)
+        moreau::step::<WITH>(body, span, pace, from, carried.rest_s)
     }
 
     #[inline(always)]

@@ -5,12 +5,12 @@
 
 use super::drive::Span;
 use super::number::Pure;
-use super::one_mass::{EVERY, OneMass};
+use super::one_mass::OneMass;
 use super::split::{Carried, Pace, Step};
 
 /// One sub-step of length `h`.
 #[inline(always)]
-pub(super) fn step(
+pub(super) fn step<const WITH: usize>(
     body: &OneMass<Pure>,
     span: &Span,
     pace: Pace,
@@ -19,16 +19,16 @@ pub(super) fn step(
 ) -> Step {
     let Pace { h, rate, .. } = pace;
     let (psi, load) = span.end();
-    let torque = body.torque::<EVERY>(psi, load, phi);
+    let torque = body.torque::<WITH>(psi, load, phi);
     let s = v.sign();
     let free = v + rate * (torque - body.curved(v, s));
     // The resolvent of friction whose levels differ: soft threshold with one width on each side.
-    let up = free - rate * body.kinetic::<EVERY>(Pure::ONE, phi, load);
-    let down = free - rate * body.kinetic::<EVERY>(-Pure::ONE, phi, load);
+    let up = free - rate * body.kinetic::<WITH>(Pure::ONE, phi, load);
+    let down = free - rate * body.kinetic::<WITH>(-Pure::ONE, phi, load);
     let slipped = up.when(up.0 > 0.0, down.when(down.0 < 0.0, Pure::ZERO));
     let next = slipped / (Pure::ONE + rate * body.linear(Pure::ONE));
-    let held = body.held::<EVERY>(phi, load, rest_s + h);
-    let holds = (v.0 == 0.0) & (torque.abs_at_most(held.to::<EVERY>(torque.sign())));
+    let held = body.held::<WITH>(phi, load, rest_s + h);
+    let holds = (v.0 == 0.0) & (torque.abs_at_most(held.to::<WITH>(torque.sign())));
     let speed = Pure::ZERO.when(holds, next);
     let phi_next = phi + h * speed;
     Step {

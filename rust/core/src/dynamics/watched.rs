@@ -22,7 +22,7 @@ impl<const INSIDE: bool, const N: usize> WithSimd for Watched<'_, INSIDE, N> {
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         // Fewer kernels than without a look inside: there the look is what costs.
         match (self.0.kernel, self.0.effects) {
-            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
+            (Kernel::MoreauJean, _) => self.along::<MoreauJean<EVERY>>(),
             (Kernel::Split, PLAIN) => self.along::<Split<PLAIN>>(),
             (Kernel::Split, 1..WAVY) => self.along::<Split<TAME>>(),
             (Kernel::Split, WAVY..=EVERY) => self.along::<Split<EVERY>>(),
