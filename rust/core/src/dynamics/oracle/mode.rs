@@ -155,8 +155,8 @@ impl<'a> Mode<'a> {
                     torque[i].value[k] -= spring * angle[j].value[k];
                     torque[i].size[k] += spring.abs() * angle[j].size[k];
                     if k < ORDER {
-                        // The damper's torque: that of the body's own friction is not told apart from it here, for
-                        // a held body has none.
+                        // Dampers, and the body's own viscous friction while it slides; a held body has none, and
+                        // only its torque is asked for.
                         let damper = self.damping[i * n + j] * (k + 1) as f64;
                         torque[i].value[k] -= damper * angle[j].value[k + 1];
                         torque[i].size[k] += damper.abs() * angle[j].size[k + 1];
