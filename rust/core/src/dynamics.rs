@@ -22,6 +22,7 @@ mod march;
 mod moreau;
 mod number;
 mod one_mass;
+pub mod oracle;
 mod parameters;
 mod split;
 mod tile;
