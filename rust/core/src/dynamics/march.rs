@@ -34,8 +34,8 @@ pub(super) struct Lanes<const N: usize> {
 pub(super) struct State<const N: usize> {
     pub phi: [f64; N],
     pub v: [f64; N],
-    rest_s: [f64; N],
-    bristle: [f64; N],
+    pub rest_s: [f64; N],
+    pub bristle: [f64; N],
 }
 
 impl<const N: usize> Lanes<N> {
@@ -65,7 +65,7 @@ impl<const N: usize> Lanes<N> {
     }
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> (OneMass<Pure>, Pace) {
+    pub fn lane(&self, lane: usize) -> (OneMass<Pure>, Pace) {
         let pace = Pace {
             h: self.h,
             rate: Pure(self.rate[lane]),
@@ -90,12 +90,12 @@ impl<const N: usize> State<N> {
     }
 
     #[inline(always)]
-    fn at(&self, lane: usize) -> (Pure, Pure) {
+    pub fn at(&self, lane: usize) -> (Pure, Pure) {
         (Pure(self.phi[lane]), Pure(self.v[lane]))
     }
 
     #[inline(always)]
-    fn carried(&self, lane: usize) -> Carried {
+    pub fn carried(&self, lane: usize) -> Carried {
         Carried {
             rest_s: Pure(self.rest_s[lane]),
             bristle: Pure(self.bristle[lane]),
@@ -130,11 +130,13 @@ pub(super) trait WithKernel {
     fn with<A: Advance>(self) -> Self::Output;
 }
 
+/// Everything on an elastic contact.
+pub(super) const WHOLE: usize = EVERY | LUGRE;
+
 /// Chooses the kernel that looks at the given effects ([`OneMass::effects`]) and at as few others as there are.
 #[inline(always)]
 pub(super) fn choose<T: WithKernel>(kernel: Kernel, effects: usize, then: T) -> T::Output {
     const BOTH: usize = LOCAL | CURVED;
-    const WHOLE: usize = EVERY | LUGRE;
     match (kernel, effects) {
         (Kernel::MoreauJean, PLAIN | CURVED) => then.with::<MoreauJean<CURVED>>(),
         (Kernel::MoreauJean, ..=BOTH) => then.with::<MoreauJean<BOTH>>(),

@@ -4,11 +4,12 @@ use crate::Error;
 
 use super::drive::{Drive, Span};
 use super::events::{Event, beyond_gap, friction_events, gap_event};
-use super::lanes::{Batch, Kernel, Start, Width, check};
-use super::ledger::Ledger;
+use super::lane_check::check_lanes;
+use super::lanes::{Drives, Kernel, Start};
+use super::ledger::{Booker, Ledger, booker};
 use super::march::{Advance, WithKernel, choose};
 use super::number::Pure;
-use super::one_mass::OneMass;
+use super::one_mass::{EVERY, OneMass};
 use super::split::{Carried, Pace, Step};
 
 /// What [`trace`] returns.
@@ -18,6 +19,9 @@ pub struct Trace {
     pub phi: Vec<f64>,
     /// Its speed, rad/s.
     pub speed: Vec<f64>,
+    /// Torque of friction against the motion, viscous and curved parts included, Nm: the mean over the step that follows
+    /// the sample (before the last sample: that leads to it). At rest it is what is held.
+    pub friction: Vec<f64>,
     /// What happened, in order.
     pub events: Vec<Event>,
     /// Where the energy went.
@@ -38,6 +42,19 @@ impl WithKernel for OneStep {
     }
 }
 
+/// The mean torque of friction over a step: what springs and load give and inertia does not take.
+fn balance(
+    body: &OneMass<Pure>,
+    span: &Span,
+    pace: Pace,
+    (phi, v): (Pure, Pure),
+    step: &Step,
+) -> f64 {
+    let (psi, load) = span.middle();
+    let middle = (phi + step.phi) * Pure(0.5);
+    (body.torque::<EVERY>(psi, load, middle) - (step.speed - v) / pace.rate).0
+}
+
 /// Runs one body along a drive, with the same bits as a lane of [`super::simulate`].
 ///
 /// # Errors
@@ -48,14 +65,9 @@ pub fn trace(
     kernel: Kernel,
     drive: &Drive,
 ) -> Result<Trace, Error> {
-    let batch = Batch {
-        bodies: &[*body],
-        starts: &[start],
-        kernel,
-        width: Width::Baseline,
-    };
-    check(batch, drive)?;
+    check_lanes(&[*body], &[start], Drives::Shared(drive), kernel, 0)?;
     let step = choose(kernel, body.effects(), OneStep);
+    let booked: Booker = booker(body.effects());
     let body = body.pure();
     let mut carried = Carried::NONE;
     let (mut phi, mut v) = (Pure(start.phi), Pure(start.speed));
@@ -65,6 +77,7 @@ pub fn trace(
     let mut out = Trace {
         phi: Vec::with_capacity(samples),
         speed: Vec::with_capacity(samples),
+        friction: Vec::with_capacity(samples),
         events: Vec::new(),
         ledger: Ledger::default(),
     };
@@ -91,10 +104,15 @@ pub fn trace(
                 gap = next;
             }
             let drives = (span.start(), span.end());
-            out.ledger.book(&body, h, (phi, v), &step, drives);
+            out.ledger.book(&booked(&body, h, (phi, v), &step, drives));
+            if sub == 0 {
+                out.friction
+                    .push(balance(&body, &span, pace, (phi, v), &step));
+            }
             (phi, v, carried) = (step.phi, step.speed, step.carried);
         }
     }
+    out.friction.extend(out.friction.last().copied());
     let (psi, _) = drive.span((samples - 1) * drive.substeps() - 1).end();
     out.ledger.stored_last = body.stored(psi, phi, v).0;
     out.ledger.turnover += out.ledger.stored_first;
