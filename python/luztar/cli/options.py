@@ -10,7 +10,7 @@ Files = Annotated[list[str], typer.Argument(metavar="RUN", help="Run files: CSV 
 ModelName = Annotated[
     str,
     typer.Option(
-        "--model", metavar="M", help="A built-in structure (rig, axis) or a model file (TOML; also steering)."
+        "--model", metavar="M", help="A built-in structure (rig, axis) or a model file (TOML; also steering, car)."
     ),
 ]
 Map = Annotated[
@@ -27,7 +27,9 @@ HeldOut = Annotated[
 Band = Annotated[
     float | None,
     typer.Option(
-        "--band", metavar="HZ", help="Upper edge of the comparison. Default: 6 for rig, 40 for axis; none for steering."
+        "--band",
+        metavar="HZ",
+        help="Upper edge of the comparison. Default: 6 for rig, 40 for axis; none for steering and car.",
     ),
 ]
 Resample = Annotated[

@@ -108,9 +108,9 @@ def draw(model: Model, study: MonteCarlo) -> dict[str, Any]:
     ModelError, ParameterError
         A model that does not run freely, a parameter without a value or with a distribution that makes no sense.
     """
-    if not model.structure.is_free:
+    if model.structure_name != "steering":
         remedy = 'Give a model file with structure = "steering".'
-        raise ModelError(f"'{model.structure_name}' is driven: it cannot be simulated", "structure", remedy)
+        raise ModelError(f"'{model.structure_name}' is not simulated here", "structure", remedy)
     given = {**model.start, **model.known, **study.vary}
     missing = [k for k in keys_of(model) if k not in given and k not in OPTIONAL and not k.startswith(SENSOR)]
     if missing:
