@@ -23,7 +23,7 @@ impl From<CoreError> for PyErr {
 /// What is wrong, where, and what to do: the three parts every error of the Python side has.
 fn parts(error: luztar::Error) -> (String, String, String) {
     use luztar::Error::{
-        Length, NonFinite, OutOfRange, Singular, Unknown, Unlike, Unrepresentable,
+        Length, Mechanism, NonFinite, OutOfRange, Singular, Unknown, Unlike, Unrepresentable,
     };
     match error {
         NonFinite { name, index, value } => (
@@ -54,6 +54,11 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             what.to_owned(),
             format!("Known are: {known}."),
         ),
+        Mechanism {
+            place,
+            problem,
+            remedy,
+        } => (problem, place, remedy),
         Unlike { what } => (
             format!("{what} cannot be merged"),
             "merge".to_owned(),

@@ -7,6 +7,7 @@ mod driven;
 mod dynamics;
 mod effects;
 mod error;
+mod mechanism;
 mod projections;
 mod regression;
 mod signal;
@@ -28,6 +29,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::mechanism::{Mechanism, MechanismStepper, hold_or_slide};
     #[pymodule_export]
     use crate::projections::project;
     #[pymodule_export]

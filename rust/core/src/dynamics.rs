@@ -22,6 +22,7 @@ mod split;
 mod trace;
 
 pub use drive::Drive;
+pub(crate) use drive::refine;
 pub use events::{Event, EventKind};
 pub use lanes::{Batch, Kernel, SUMMARY, Start, Width, simulate, summarise};
 pub use ledger::Ledger;

@@ -167,7 +167,7 @@ impl Drive {
 }
 
 /// `parts` values per interval and the last sample.
-fn refine(samples: &[f64], parts: usize) -> Vec<f64> {
+pub(crate) fn refine(samples: &[f64], parts: usize) -> Vec<f64> {
     let last = samples.len() - 1;
     let mut out = Vec::with_capacity(last * parts + 1);
     for i in 0..last {

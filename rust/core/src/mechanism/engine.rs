@@ -1,0 +1,319 @@
+//! One step of a mechanism: smooth stretches between the events that are located inside it.
+//!
+//! As the step of one body ([`crate::dynamics`]): a reversal where the relative speed, a break-away where the held
+//! torque crosses its limit, each located by a straight line, so that events cost no order. What happens more often in
+//! one step than frictions can in turn, is left to one step of Moreau and Jean: the cost is bounded.
+
+use super::box_qp::Method;
+use super::channels::Parabola;
+use super::contacts::Contacts;
+use super::forces::Plan;
+use super::moreau::Moreau;
+use super::rigid::Rigid;
+use super::smooth::{Smooth, State, Stretch, drive};
+
+/// Who looks on while a step is made.
+pub(super) trait Watch {
+    /// A stretch went from one state to another; `held` are the torques of what holds, where they are looked at.
+    fn stretch(&mut self, plan: &Plan, from: &State, to: &State, stretch: &Stretch<'_>);
+    /// A friction changed its mode at a share of the step.
+    fn change(&mut self, friction: usize, from: i8, to: i8, share: f64);
+}
+
+/// Nobody.
+pub(super) struct Nobody;
+
+impl Watch for Nobody {
+    fn stretch(&mut self, _: &Plan, _: &State, _: &State, _: &Stretch<'_>) {}
+    fn change(&mut self, _: usize, _: i8, _: i8, _: f64) {}
+}
+
+/// What happens first in a stretch.
+enum First {
+    /// A friction's relative speed is 0.
+    Stop(usize),
+    /// One that held breaks away.
+    Break(usize, i8),
+    /// Several at once do.
+    BreakMany,
+}
+
+/// A mechanism in motion.
+#[derive(Debug, Clone)]
+pub(super) struct Engine {
+    pub plan: Plan,
+    pub state: State,
+    pub span: Vec<Parabola>,
+    pub h: f64,
+    rigid: Rigid,
+    smooth: Smooth,
+    contacts: Contacts,
+    moreau: Moreau,
+    pinned: Vec<bool>,
+    /// Modes before a decision.
+    before: Vec<i8>,
+}
+
+impl Engine {
+    pub fn new(plan: Plan, h: f64, method: Method) -> Self {
+        let (nodes, c) = (plan.nodes(), plan.frictions.len());
+        Self {
+            state: State {
+                place: vec![0.0; nodes],
+                speed: vec![0.0; nodes],
+                modes: vec![0; c],
+            },
+            span: vec![Parabola::default(); plan.driven + plan.loads.len()],
+            h,
+            rigid: Rigid::new(&plan),
+            smooth: Smooth::new(&plan),
+            contacts: Contacts::new(&plan, method),
+            moreau: Moreau::new(&plan, method),
+            pinned: vec![false; c],
+            before: vec![0; c],
+            plan,
+        }
+    }
+
+    /// Starts from places and speeds of the bodies, with the step to come in `self.span`.
+    pub fn start(&mut self, place: &[f64], speed: &[f64]) {
+        let n = self.plan.bodies;
+        self.state.place[..n].copy_from_slice(place);
+        self.state.speed[..n].copy_from_slice(speed);
+        let stretch = Stretch {
+            span: &self.span,
+            h: self.h,
+            from: 0.0,
+            to: 1.0,
+        };
+        drive(&self.plan, &stretch, 0.0, &mut self.state);
+        for (mode, friction) in self.state.modes.iter_mut().zip(&self.plan.frictions) {
+            let speed = friction.pair.of(&self.state.speed);
+            *mode = i8::from(speed > 0.0) - i8::from(speed < 0.0);
+        }
+        self.contacts
+            .decide(&self.plan, &mut self.state, &stretch, 0.0);
+        self.regroup();
+    }
+
+    /// Goes on from a stored state.
+    pub fn restore(&mut self, place: &[f64], speed: &[f64], modes: &[i8]) {
+        self.state.place.copy_from_slice(place);
+        self.state.speed.copy_from_slice(speed);
+        self.state.modes.copy_from_slice(modes);
+        self.regroup();
+    }
+
+    /// Whether the torques that hold are not unique.
+    pub fn redundant(&self) -> bool {
+        self.rigid.redundant
+    }
+
+    /// The torques of the frictions in the present state: those that slide by their law, those that hold by
+    /// equilibrium.
+    pub fn friction_torques(&mut self, share: f64, out: &mut [f64]) {
+        if self.contacts.any_stuck() {
+            let stretch = Stretch {
+                span: &self.span,
+                h: self.h,
+                from: 0.0,
+                to: 1.0,
+            };
+            self.contacts.hold(&self.plan, &self.state, &stretch, share);
+        }
+        let (plan, state) = (&self.plan, &self.state);
+        for (i, (friction, &mode)) in plan.frictions.iter().zip(&state.modes).enumerate() {
+            out[i] = if mode == 0 {
+                self.contacts.held()[i]
+            } else {
+                friction.kinetic(f64::from(mode), friction.pair.of(&state.speed))
+            };
+        }
+    }
+
+    fn regroup(&mut self) {
+        self.rigid.set(&self.plan, &self.state.modes);
+        self.rigid.impose(&self.plan, &mut self.state.speed);
+        self.contacts.set(&self.state.modes, &self.rigid);
+        self.smooth.forget();
+    }
+
+    /// One step along `self.span`.
+    pub fn step(&mut self, watch: &mut impl Watch) {
+        let mut from = 0.0;
+        self.pinned.fill(false);
+        // Every friction may stop, turn and break away once, and one may do so again.
+        for _ in 0..3 * self.plan.frictions.len() + 3 {
+            let stretch = Stretch {
+                span: &self.span,
+                h: self.h,
+                from,
+                to: 1.0,
+            };
+            self.smooth
+                .advance(&self.plan, &self.rigid, &self.state, &stretch);
+            if let Some(friction) = self.does_not_start() {
+                watch.change(friction, self.state.modes[friction], 0, from);
+                self.state.modes[friction] = 0;
+                self.pinned[friction] = true;
+                self.regroup();
+                continue;
+            }
+            let Some((at, first)) = self.first(from) else {
+                self.accept(watch, from, 1.0);
+                return;
+            };
+            let to = from + at * (1.0 - from);
+            self.cut(at, from, to);
+            self.accept(watch, from, to);
+            self.before.copy_from_slice(&self.state.modes);
+            self.happens(&first);
+            let stretch = Stretch {
+                span: &self.span,
+                h: self.h,
+                from: to,
+                to: 1.0,
+            };
+            self.contacts
+                .decide(&self.plan, &mut self.state, &stretch, to);
+            self.regroup();
+            for (friction, (old, new)) in self.before.iter().zip(&self.state.modes).enumerate() {
+                if old != new {
+                    watch.change(friction, *old, *new, to);
+                }
+            }
+            from = to;
+            if from >= 1.0 {
+                return;
+            }
+        }
+        self.leave_to_moreau(watch, from);
+    }
+
+    fn leave_to_moreau(&mut self, watch: &mut impl Watch, from: f64) {
+        let stretch = Stretch {
+            span: &self.span,
+            h: self.h,
+            from,
+            to: 1.0,
+        };
+        self.before.copy_from_slice(&self.state.modes);
+        self.moreau
+            .advance(&self.plan, &self.state, &stretch, &mut self.smooth.end);
+        self.accept(watch, from, 1.0);
+        self.state.modes.copy_from_slice(&self.smooth.end.modes);
+        self.regroup();
+        for (friction, (old, new)) in self.before.iter().zip(&self.state.modes).enumerate() {
+            if old != new {
+                watch.change(friction, *old, *new, 1.0);
+            }
+        }
+    }
+
+    /// A friction that was let go at rest and would move against its own direction: it is held for the rest of the step.
+    fn does_not_start(&self) -> Option<usize> {
+        let (now, end) = (&self.state.speed, &self.smooth.end.speed);
+        let frictions = self.plan.frictions.iter().zip(&self.state.modes);
+        frictions.enumerate().find_map(|(i, (friction, &mode))| {
+            let s = f64::from(mode);
+            let stays =
+                mode != 0 && s * friction.pair.of(now) <= 0.0 && s * friction.pair.of(end) <= 0.0;
+            stays.then_some(i)
+        })
+    }
+
+    /// What happens first between the state and the end of the stretch, and at which share of it.
+    fn first(&mut self, from: f64) -> Option<(f64, First)> {
+        let mut found: Option<(f64, First)> = None;
+        let (now, end) = (&self.state.speed, &self.smooth.end.speed);
+        for (i, (friction, &mode)) in
+            (self.plan.frictions.iter().zip(&self.state.modes)).enumerate()
+        {
+            let s = f64::from(mode);
+            let (before, after) = (s * friction.pair.of(now), s * friction.pair.of(end));
+            if mode != 0 && after <= 0.0 {
+                let at = before / (before - after);
+                if found.as_ref().is_none_or(|f| at < f.0) {
+                    found = Some((at, First::Stop(i)));
+                }
+            }
+        }
+        let stretch = Stretch {
+            span: &self.span,
+            h: self.h,
+            from,
+            to: 1.0,
+        };
+        let breaks = self.contacts.break_away(
+            &self.plan,
+            (&self.state, &self.smooth.end),
+            &stretch,
+            &self.pinned,
+        );
+        if let Some(breaks) = breaks
+            && found.as_ref().is_none_or(|f| breaks.at < f.0)
+        {
+            let what = match breaks.single {
+                Some((i, direction)) => First::Break(i, direction),
+                None => First::BreakMany,
+            };
+            found = Some((breaks.at, what));
+        }
+        found
+    }
+
+    /// Takes the end of the stretch back to a share of it: speeds run along straight lines.
+    fn cut(&mut self, at: f64, from: f64, to: f64) {
+        let dt = (to - from) * self.h;
+        let end = &mut self.smooth.end;
+        for i in 0..self.plan.bodies {
+            let before = self.state.speed[i];
+            end.speed[i] = before + at * (end.speed[i] - before);
+            end.place[i] = self.state.place[i] + dt * (before + end.speed[i]) * 0.5;
+        }
+        let stretch = Stretch {
+            span: &self.span,
+            h: self.h,
+            from,
+            to,
+        };
+        drive(&self.plan, &stretch, to, end);
+    }
+
+    fn accept(&mut self, watch: &mut impl Watch, from: f64, to: f64) {
+        let stretch = Stretch {
+            span: &self.span,
+            h: self.h,
+            from,
+            to,
+        };
+        watch.stretch(&self.plan, &self.state, &self.smooth.end, &stretch);
+        std::mem::swap(&mut self.state.place, &mut self.smooth.end.place);
+        std::mem::swap(&mut self.state.speed, &mut self.smooth.end.speed);
+    }
+
+    /// Lets the first event happen: modes of 0 are then decided upon.
+    fn happens(&mut self, first: &First) {
+        match *first {
+            First::Stop(i) => {
+                let pair = self.plan.frictions[i].pair;
+                self.state.modes[i] = 0;
+                // Beside the ground, the straight line has left rounding.
+                let ground = self.plan.nodes() - 1;
+                if pair.b == ground {
+                    self.state.speed[pair.a] = 0.0;
+                } else if pair.a == ground {
+                    self.state.speed[pair.b] = 0.0;
+                }
+            }
+            First::Break(i, direction) => self.state.modes[i] = direction,
+            First::BreakMany => {
+                for (i, direction) in self.contacts.slides() {
+                    if direction != 0 {
+                        self.state.modes[i] = direction;
+                    }
+                }
+            }
+        }
+    }
+}
