@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._arrays import vector, whole_number
+from .._arrays import vector
 from ..errors import ParameterError
 from . import drives as door
 from .mechanism import Mechanism, lane_table
@@ -51,7 +51,7 @@ def simulate_lanes(
     seconds: float | None = None,
     start: Mapping[str, float] | None = None,
     start_speed: Mapping[str, float] | None = None,
-    substeps: int = 1,
+    substeps: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Lanes:
     """Run one mechanism with many parameter sets, all along the same drives.
@@ -65,7 +65,7 @@ def simulate_lanes(
     parameters : mapping of str to array_like, shape (lanes,)
         By the names of :meth:`Mechanism.parameters`, one value per lane.
     drives, sample_rate_hz, seconds, start, start_speed, substeps
-        As :func:`simulate`.
+        As :func:`simulate`; the substeps that are chosen suit the mechanism as it is, not each lane.
     progress : callable, optional
         Called with (lanes done, lanes); between the calls an interrupt is heard.
 
@@ -102,7 +102,7 @@ def simulate_lanes(
     place, speed = (np.empty((lanes, len(mechanism.bodies), rows.shape[1])) for _ in range(2))
     options = {
         "sample_rate_hz": rate,
-        "substeps": whole_number("substeps", substeps, 1, 1_000_000),
+        "substeps": door.parts(mechanism, 1.0 / rate, substeps),
     }
     starts = door.by_body("start", mechanism, start), door.by_body("start_speed", mechanism, start_speed)
     for first in range(0, lanes, CHUNK):

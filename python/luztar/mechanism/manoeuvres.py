@@ -14,8 +14,6 @@ from .run import simulate
 from .structures import steering_one_mass
 
 RATE_HZ = 500.0
-# The springs of both models are stepped at a tenth of their limit: what is left is the reduction's error.
-_MARGIN = 0.1
 
 
 @dataclass(frozen=True)
@@ -108,8 +106,7 @@ def compare(
     one = steering_one_mass(parameters)
     runs = []
     for m, drive, body in ((mechanism, handwheel, at), (one, "handwheel", "roadwheel")):
-        substeps = max(1, math.ceil(1.0 / (RATE_HZ * _MARGIN * m.longest_step_s)))
-        runs.append(simulate(m, {drive: test.angle_rad}, sample_rate_hz=RATE_HZ, substeps=substeps).position[body])
+        runs.append(simulate(m, {drive: test.angle_rad}, sample_rate_hz=RATE_HZ).position[body])
     whole, single = runs
     off = single - whole
     return ReductionError(

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from .._arrays import whole_number
 from ..errors import ParameterError
 from . import drives as door
 from .mechanism import Mechanism
@@ -25,7 +24,7 @@ def simulate(
     seconds: float | None = None,
     start: Mapping[str, float] | None = None,
     start_speed: Mapping[str, float] | None = None,
-    substeps: int = 1,
+    substeps: int | None = None,
     solver: str = "active_set",
 ) -> MechanismRun:
     """Run a mechanism.
@@ -41,8 +40,9 @@ def simulate(
         Length of the run where no channel is given.
     start, start_speed : mapping of str to float, optional
         Of bodies, rad or m, rad/s or m/s; 0 where none is given.
-    substeps : int, >= 1
-        Steps per sampling interval. The step times the highest circular frequency of the springs must stay below 2.
+    substeps : int, optional
+        Steps of the core per sampling interval; where not given, as many as keep a step below a tenth of the longest
+        that the springs allow (:attr:`Mechanism.longest_step_s`).
     solver : {"active_set", "gauss_seidel"}
         How it is decided which frictions hold; the second is for tests, the motion is the same.
 
@@ -80,7 +80,7 @@ def simulate(
         door.by_body("start", mechanism, start),
         door.by_body("start_speed", mechanism, start_speed),
         sample_rate_hz=rate,
-        substeps=whole_number("substeps", substeps, 1, 1_000_000),
+        substeps=door.parts(mechanism, 1.0 / rate, substeps),
         gauss_seidel=solver == "gauss_seidel",
     )
     bodies = [b.name for b in mechanism.bodies]

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from .. import _core
-from .._arrays import vector, whole_number
+from .._arrays import vector
 from .._stream import Stream
 from ..errors import ParameterError
 from . import drives as door
@@ -33,8 +33,9 @@ class Stepper(Stream):
         Present values of :attr:`Mechanism.channels`; 0 where none are given.
     start, start_speed : mapping of str to float, optional
         Of bodies.
-    substeps : int, >= 1
-        Steps of the core per call.
+    substeps : int, optional
+        Steps of the core per call; where not given, as many as keep a step below a tenth of the longest
+        that the springs allow (:attr:`Mechanism.longest_step_s`).
 
     Raises
     ------
@@ -61,7 +62,7 @@ class Stepper(Stream):
         channels: Any = None,
         start: Mapping[str, float] | None = None,
         start_speed: Mapping[str, float] | None = None,
-        substeps: int = 1,
+        substeps: int | None = None,
     ) -> None:
         width = len(mechanism.channels)
         first = np.zeros(width) if channels is None else vector("channels", channels, minimum=0)
@@ -69,7 +70,7 @@ class Stepper(Stream):
             known = ", ".join(mechanism.channels) or "none"
             raise ParameterError(f"channels has {first.size} values", "channels", f"Give one for each of: {known}.")
         step = door.positive("step_s", step_s)
-        parts = whole_number("substeps", substeps, 1, 1_000_000)
+        parts = door.parts(mechanism, step, substeps)
         places, speeds = (
             door.by_body(name, mechanism, values) for name, values in (("start", start), ("start_speed", start_speed))
         )
@@ -171,7 +172,8 @@ class Stepper(Stream):
                 raise ParameterError(
                     f"state is of a {state['kind']}, schema {state['schema']}", "state", "Give one of a Stepper."
                 )
-            made = cls(from_tables(json.loads(json.dumps(state["mechanism"]))), state["step_s"], substeps=state["substeps"])
+            mechanism = from_tables(json.loads(json.dumps(state["mechanism"])))
+            made = cls(mechanism, state["step_s"], substeps=state["substeps"])
             made.restore(list(state["integers"]), [float(v) for v in state["numbers"]])
         except (KeyError, TypeError, OverflowError) as wrong:
             raise ParameterError(f"state is not one of to_state() ({wrong!r})", "state", "Store it anew.") from None
