@@ -203,13 +203,15 @@ class RearAxle:
     gap_rad: float = 0.002
 
 
-def power_assistance(force_n: float = 2000.0, from_rad: float = 0.01, to_rad: float = 0.05) -> Assistance:
+def power_assistance(force_n: float = 600.0, from_rad: float = 0.01, to_rad: float = 0.05) -> Assistance:
     """Return a boost curve: none up to a twist of the column, then a line to its limit, constant beyond.
 
     Parameters
     ----------
     force_n : float
-        Limit, N at the rack; 2000 (own: with 115 Nm/rad reached at a hand torque of 5.75 Nm).
+        Limit, N at the rack; 600 (own: reached at a hand torque of 5.75 Nm with 115 Nm/rad). A curve of three times the
+        slope makes the default mechanism hunt from stop to stop of its freeplay, as a real one without a damped controller
+        would.
     from_rad, to_rad : float
         Twist of the column at which assistance begins and reaches its limit.
     """

@@ -1,7 +1,7 @@
 //! One step of a mechanism: smooth stretches between the events that are located inside it.
 //!
 //! As the step of one body ([`crate::dynamics`]): a reversal where the relative speed, a break-away where the held
-//! torque crosses its limit, each located by a straight line, so that events cost no order. What happens more often in
+//! torque crosses its limit, each located inside the step, so that events cost no order. What happens more often in
 //! one step than frictions can in turn, is left to one step of Moreau and Jean: the cost is bounded.
 
 use super::box_qp::Method;
@@ -37,6 +37,10 @@ enum First {
     /// Several at once do.
     BreakMany,
 }
+
+// Frictions that stop with another, as those of a left and a right wheel do: what is left of their relative speed, as
+// a share of that at the start of the stretch.
+const TOGETHER: f64 = 1e-6;
 
 /// A mechanism in motion.
 #[derive(Debug, Clone)]
@@ -133,7 +137,7 @@ impl Engine {
 
     fn regroup(&mut self) {
         self.rigid.set(&self.plan, &self.state.modes);
-        self.rigid.impose(&self.plan, &mut self.state.speed);
+        self.rigid.merge(&self.plan, &mut self.state.speed);
         self.contacts.set(&self.state.modes, &self.rigid);
         self.smooth.forget();
     }
@@ -163,8 +167,7 @@ impl Engine {
                 self.accept(watch, from, 1.0);
                 return;
             };
-            let to = from + at * (1.0 - from);
-            self.cut(at, from, to);
+            let to = self.locate(from, at, &first);
             self.accept(watch, from, to);
             self.before.copy_from_slice(&self.state.modes);
             self.happens(&first);
@@ -262,22 +265,43 @@ impl Engine {
         found
     }
 
-    /// Takes the end of the stretch back to a share of it: speeds run along straight lines.
-    fn cut(&mut self, at: f64, from: f64, to: f64) {
-        let dt = (to - from) * self.h;
-        let end = &mut self.smooth.end;
-        for i in 0..self.plan.bodies {
-            let before = self.state.speed[i];
-            end.speed[i] = before + at * (end.speed[i] - before);
-            end.place[i] = self.state.place[i] + dt * (before + end.speed[i]) * 0.5;
+    /// Carries the state to the event only, into the end of the stretch. A stop is located once more on the way there:
+    /// what is left of the relative speed is then below the error of the step.
+    fn locate(&mut self, from: f64, at: f64, first: &First) -> f64 {
+        let stopping = match *first {
+            First::Stop(i) => Some((self.plan.frictions[i].pair, f64::from(self.state.modes[i]))),
+            First::Break(..) | First::BreakMany => None,
+        };
+        let speed = |nodes: &[f64]| stopping.map_or(0.0, |(pair, s)| s * pair.of(nodes));
+        let (before, after) = (speed(&self.state.speed), speed(&self.smooth.end.speed));
+        let to = self.advance_to(from, at);
+        let Some((pair, s)) = stopping else { return to };
+        let there = s * pair.of(&self.smooth.end.speed);
+        if there > 0.0 && at < 1.0 {
+            self.advance_to(from, at + (1.0 - at) * there / (there - after))
+        } else if there < 0.0 {
+            self.advance_to(from, at * before / (before - there))
+        } else {
+            to
         }
+    }
+
+    /// Advances to a share of what is left of the step; returns the share of the step.
+    fn advance_to(&mut self, from: f64, at: f64) -> f64 {
+        let to = if at >= 1.0 {
+            1.0
+        } else {
+            from + at * (1.0 - from)
+        };
         let stretch = Stretch {
             span: &self.span,
             h: self.h,
             from,
             to,
         };
-        drive(&self.plan, &stretch, to, end);
+        self.smooth
+            .advance(&self.plan, &self.rigid, &self.state, &stretch);
+        to
     }
 
     fn accept(&mut self, watch: &mut impl Watch, from: f64, to: f64) {
@@ -292,18 +316,19 @@ impl Engine {
         std::mem::swap(&mut self.state.speed, &mut self.smooth.end.speed);
     }
 
-    /// Lets the first event happen: modes of 0 are then decided upon.
+    /// Lets the first event happen: modes of 0 are then decided upon. The state before it is in the end of the stretch.
     fn happens(&mut self, first: &First) {
         match *first {
-            First::Stop(i) => {
-                let pair = self.plan.frictions[i].pair;
-                self.state.modes[i] = 0;
-                // Beside the ground, the straight line has left rounding.
-                let ground = self.plan.nodes() - 1;
-                if pair.b == ground {
-                    self.state.speed[pair.a] = 0.0;
-                } else if pair.a == ground {
-                    self.state.speed[pair.b] = 0.0;
+            First::Stop(stops) => {
+                for i in 0..self.plan.frictions.len() {
+                    let (pair, s) = (self.plan.frictions[i].pair, f64::from(self.state.modes[i]));
+                    let (before, now) = (
+                        s * pair.of(&self.smooth.end.speed),
+                        s * pair.of(&self.state.speed),
+                    );
+                    if i == stops || (s != 0.0 && now <= TOGETHER * before) {
+                        self.stop(i);
+                    }
                 }
             }
             First::Break(i, direction) => self.state.modes[i] = direction,
@@ -314,6 +339,18 @@ impl Engine {
                     }
                 }
             }
+        }
+    }
+
+    fn stop(&mut self, friction: usize) {
+        let pair = self.plan.frictions[friction].pair;
+        self.state.modes[friction] = 0;
+        // Beside the ground what is left of the speed is in one body only.
+        let ground = self.plan.nodes() - 1;
+        if pair.b == ground {
+            self.state.speed[pair.a] = 0.0;
+        } else if pair.a == ground {
+            self.state.speed[pair.b] = 0.0;
         }
     }
 }

@@ -83,6 +83,25 @@ impl Rigid {
         }
     }
 
+    /// Lets what has just been joined move as one, with the momentum that its bodies had.
+    pub fn merge(&self, plan: &Plan, speed: &mut [f64]) {
+        for &lead in &self.free {
+            let (mut momentum, mut inertia, mut alone) = (0.0, 0.0, true);
+            for body in 0..plan.bodies {
+                if self.lead[body] == lead {
+                    momentum += plan.inertia[body] * self.share[body] * speed[body];
+                    inertia += plan.inertia[body] * self.share[body] * self.share[body];
+                    // What moves as one already keeps its speed to the bit.
+                    alone &= speed[body] == self.share[body] * speed[lead];
+                }
+            }
+            if !alone {
+                speed[lead] = momentum / inertia;
+            }
+        }
+        self.impose(plan, speed);
+    }
+
     /// Lets every body have the speed of what leads it.
     pub fn impose(&self, plan: &Plan, speed: &mut [f64]) {
         for body in 0..plan.bodies {
