@@ -91,8 +91,10 @@ def test_two_bodies_on_three_contacts_have_a_unique_rest_and_many_splits():
         atol=1e-12,
     )
     for split in ((0.010, 0.004, 0.0), (0.020, -0.006, 0.010)):
-        assert all(found.interval[k][0] - 1e-12 <= v <= found.interval[k][1] + 1e-12
-                   for k, v in zip(("t1", "t2", "t12"), split, strict=True))
+        assert all(
+            found.interval[k][0] - 1e-12 <= v <= found.interval[k][1] + 1e-12
+            for k, v in zip(("t1", "t2", "t12"), split, strict=True)
+        )
     # Along t = (0.010 + s, 0.004 - s, s) the norm is least at s = -0.002.
     np.testing.assert_allclose([found.least_norm[k] for k in ("t1", "t2", "t12")], (0.008, 0.006, -0.002), atol=1e-12)
     assert "motion is unique" in str(run) and found.to_dict()["interval"]["t12"] == pytest.approx([-0.01, 0.01])

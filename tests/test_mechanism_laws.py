@@ -49,9 +49,7 @@ def mechanisms(draw: st.DrawFn, *, loaded: bool = False) -> tuple[Mechanism, dic
         else:
             kinetic = draw(st.floats(0.0, 2.0))
             elements.append(
-                Friction(
-                    f"f{i}", f"b{a}", b, kinetic=kinetic, static=kinetic * draw(st.sampled_from([1.0, 1.3]))
-                )
+                Friction(f"f{i}", f"b{a}", b, kinetic=kinetic, static=kinetic * draw(st.sampled_from([1.0, 1.3])))
             )
     loads = tuple(Load(f"l{i}", f"b{i}") for i in range(n)) if loaded else ()
     m = Mechanism(bodies=tuple(bodies), elements=tuple(elements), loads=loads)
@@ -126,9 +124,8 @@ def test_a_passive_mechanism_gives_back_no_more_than_it_got():
 def test_a_whole_steering_held_by_its_frictions_stays_for_ever():
     m = steering_mechanism()
     n = 20_001
-    run = simulate(
-        m, {"handwheel": np.zeros(n), "tyre_left": np.full(n, 3.9), "tyre_right": np.full(n, -3.9)}, sample_rate_hz=1000.0
-    )
+    drives = {"handwheel": np.zeros(n), "tyre_left": np.full(n, 3.9), "tyre_right": np.full(n, -3.9)}
+    run = simulate(m, drives, sample_rate_hz=1000.0)
     assert run.events == ()
     assert not any(run.position[b.name].any() or run.speed[b.name].any() for b in m.bodies)
 
@@ -136,8 +133,9 @@ def test_a_whole_steering_held_by_its_frictions_stays_for_ever():
 def test_assistance_lightens_the_hand_and_is_booked_as_work():
     t = np.arange(2001) / 500.0
     drive = {"handwheel": 1.5 * np.sin(np.pi * t)}
-    plain, helped = (simulate(steering_mechanism(assistance=a), drive, sample_rate_hz=500.0) for a in
-                     (None, power_assistance()))
+    plain, helped = (
+        simulate(steering_mechanism(assistance=a), drive, sample_rate_hz=500.0) for a in (None, power_assistance())
+    )
     # The slope of the curve is 1.3 times the column's: the hand is left with less than three quarters.
     assert np.abs(helped.sensor("hand_torque")).max() < 0.75 * np.abs(plain.sensor("hand_torque")).max()
     assert helped.energy_j["assistance"] > 0.0 and helped.balanced

@@ -92,7 +92,12 @@ def test_free_decay_stops_where_the_closed_form_does():
 
 @pytest.mark.parametrize(
     ("r", "share", "zeta", "amplitude"),
-    [(0.6, 0.2, 0.0, 1.55060285), (1.2, 0.5, 0.0, 1.65746747), (0.7, 0.3, 0.1, 1.63078610), (1.3, 0.4, 0.05, 1.05301703)],
+    [
+        (0.6, 0.2, 0.0, 1.55060285),
+        (1.2, 0.5, 0.0, 1.65746747),
+        (0.7, 0.3, 0.1, 1.63078610),
+        (1.3, 0.4, 0.05, 1.05301703),
+    ],
 )
 def test_den_hartogs_amplitudes(r, share, zeta, amplitude):
     # 400 cycles leave of the start what exp(-400 pi zeta) or the friction does.

@@ -107,7 +107,10 @@ def test_what_one_mass_has_no_place_for_is_named():
         (
             Mechanism(
                 (Body("a", 1.0),),
-                (Spring("k", "handwheel", "a", stiffness=1.0), Spring("l", "handwheel", "a", stiffness=1.0, ratio_b=2.0)),
+                (
+                    Spring("k", "handwheel", "a", stiffness=1.0),
+                    Spring("l", "handwheel", "a", stiffness=1.0, ratio_b=2.0),
+                ),
                 (Driven("handwheel"),),
             ),
             "a",

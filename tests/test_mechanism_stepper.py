@@ -109,8 +109,8 @@ print(hashlib.sha256(made.position["roadwheel"].tobytes() + made.speed["handwhee
 def test_lanes_have_the_bits_of_single_runs_whatever_the_number_of_threads():
     found = set()
     for threads in ("1", "2", "4"):
-        environment = {**os.environ, "RAYON_NUM_THREADS": threads}
-        done = subprocess.run([sys.executable, "-c", LANES], capture_output=True, text=True, env=environment, check=True)
+        own = {**os.environ, "RAYON_NUM_THREADS": threads}
+        done = subprocess.run([sys.executable, "-c", LANES], capture_output=True, text=True, env=own, check=True)
         found.add(done.stdout.strip())
     assert len(found) == 1
     t = np.arange(801) / 400.0

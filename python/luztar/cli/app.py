@@ -286,7 +286,9 @@ def plan(
 
 @app.command()
 def simulate(
-    model: Annotated[str, typer.Argument(metavar="MODEL", help="A steering model with every parameter given.")],
+    model: Annotated[
+        str, typer.Argument(metavar="MODEL", help="A steering model with every parameter given, or a mechanism.")
+    ],
     runs: Annotated[
         list[str] | None, typer.Argument(metavar="RUN", help="Run files: their handwheel drives the model.")
     ] = None,
@@ -306,7 +308,7 @@ def simulate(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Run a steering model: handwheel in, road wheel out.
+    """Run a steering model: handwheel in, road wheel out; or a mechanism of several bodies along its first channel.
 
     Prints the events (stick, slip, reversal, contact, release) and where the energy went.
     """

@@ -29,7 +29,13 @@ def run_simulate(
 ) -> int:
     """Simulate a model along the handwheel of runs, or along a sine, and print what happened."""
     from ..freerun.run_model import parameters_given, run_model
+    from .simulate_mechanism import find_mechanism, simulate_mechanism
 
+    mechanism = find_mechanism(model)
+    if mechanism is not None:
+        drives = _drives(runs, sine, seconds, rate, mapped, units, resample)
+        places = _places(out, [name for name, *_ in drives], [model, *runs])
+        return simulate_mechanism(mechanism, drives, places, json)
     start_from = find_model(model)
     given = parameters_given(start_from)
     drives = _drives(runs, sine, seconds, rate, mapped, units, resample)

@@ -61,7 +61,7 @@ def by_body(name: str, m: Mechanism, values: Mapping[str, float] | None) -> np.n
 
 
 def parts(m: Mechanism, step_s: float, substeps: int | None) -> int:
-    """Return the number of steps of the core per step given; of its own accord enough for springs to be followed to 0.2 %."""
+    """Return the number of core steps per step; chosen here, enough for springs to be followed to 0.2 %."""
     if substeps is not None:
         return whole_number("substeps", substeps, 1, MOST_SUBSTEPS)
     longest = m.longest_step_s

@@ -109,7 +109,7 @@ def indeterminacy(m: Mechanism, held: Mapping[str, float], *, time_s: float = 0.
 
 
 def _least_norm(rows: Any, total: Any, low: Any, high: Any, given: Any) -> np.ndarray:
-    """Return ``min |t|^2`` with ``rows t = total`` within the bounds, by an active set from a point that is admissible."""
+    """Return ``min |t|^2`` with ``rows t = total`` within the bounds: an active set from an admissible point."""
     torque = given.copy()
     bound = np.zeros(torque.size, dtype=bool)
     # Each round binds one or frees one at a lower norm: no set comes twice.

@@ -82,8 +82,8 @@ def manoeuvres(amplitude_rad: float = 1.0) -> tuple[Manoeuvre, ...]:
     Parameters
     ----------
     amplitude_rad : float
-        Of the step and the middle sine, at the handwheel; the sines have a quarter of it, itself and twice it, the weave
-        (ISO 13674-1: small angles about the centre at 0.2 Hz) a third.
+        Of the step and the middle sine, at the handwheel; the other sines have a quarter of it and twice as much, the
+        weave (small angles about the centre, slowly) a third.
     """
 
     def sine(share: float, hz: float, seconds: float) -> np.ndarray:

@@ -240,9 +240,7 @@ def _network(m: Mechanism) -> Any:
     for e in m.elements:
         if not isinstance(e, Assistance):
             kind = "spring" if e.KIND == "end_stop" else e.KIND
-            parts.append(
-                (e.name, kind, (e.a, e.ratio_a), (e.b, e.ratio_b), e._values(), ("ground", 1.0), [])
-            )
+            parts.append((e.name, kind, (e.a, e.ratio_a), (e.b, e.ratio_b), e._values(), ("ground", 1.0), []))
             continue
         sensed = springs.get(e.senses)
         if sensed is None:

@@ -154,7 +154,7 @@ def run(made: MechanismRun) -> Any:
             tickvals=list(range(len(frictions))), ticktext=[plain(n) for n in frictions], row=rows, col=1
         )
     picture.update_xaxes(title_text="s", row=rows, col=1)
-    return dressed(picture, height=180 + 190 * rows, title=plain(f"{m.title or 'mechanism'}: positions, and what holds"))
+    return dressed(picture, height=180 + 190 * rows, title=plain(f"{m.title or 'mechanism'}, and what holds"))
 
 
 def reduction(found: Reduction) -> Any:

@@ -74,9 +74,7 @@ class Stepper(Stream):
         places, speeds = (
             door.by_body(name, mechanism, values) for name, values in (("start", start), ("start_speed", start_speed))
         )
-        core = _core.MechanismStepper(
-            mechanism._network, step, parts, places.tolist(), speeds.tolist(), first.tolist()
-        )
+        core = _core.MechanismStepper(mechanism._network, step, parts, places.tolist(), speeds.tolist(), first.tolist())
         self._hold(mechanism, (step, parts), core)
 
     def _hold(self, mechanism: Mechanism, settings: tuple[float, int], core: _core.MechanismStepper) -> Self:

@@ -210,8 +210,7 @@ def power_assistance(force_n: float = 600.0, from_rad: float = 0.01, to_rad: flo
     ----------
     force_n : float
         Limit, N at the rack; 600 (own: reached at a hand torque of 5.75 Nm with 115 Nm/rad). A curve of three times the
-        slope makes the default mechanism hunt from stop to stop of its freeplay, as a real one without a damped controller
-        would.
+        slope makes the default mechanism hunt through its freeplay, as a real one without a damped controller would.
     from_rad, to_rad : float
         Twist of the column at which assistance begins and reaches its limit.
     """
@@ -339,9 +338,7 @@ def steering_mechanism(
                 ratio_a=rear_axle.ratio / steering_arm_m,
             ),
             Damper("rear_damper", "rear_wheels", viscous=rear_axle.viscous_nm_s_per_rad),
-            Friction(
-                "rear_king_pins", "rear_wheels", kinetic=rear_axle.friction_nm, static=rear_axle.static_nm
-            ),
+            Friction("rear_king_pins", "rear_wheels", kinetic=rear_axle.friction_nm, static=rear_axle.static_nm),
         ]
     return Mechanism(
         title="steering mechanism",
