@@ -59,6 +59,28 @@ def test_copies_pickles_and_json_go_on_with_the_same_bits():
         drive(twin, 700, 1500)
         assert twin.state() == stepper.state()
         assert (twin.position == stepper.position).all() and (twin.speed == stepper.speed).all()
+        assert twin.torque("left_king_pin") == stepper.torque("left_king_pin") != 0.0
+
+
+def test_torques_of_a_stepper_are_those_of_a_run_and_survive_a_restore():
+    m = steering_mechanism(king_pin_static_nm=6.0)
+    t = np.arange(301) * H
+    tyres = 2.0 * np.sin(3.0 * t)
+    drives = {"handwheel": hand(t), "tyre_left": tyres}
+    run = simulate(m, drives, sample_rate_hz=1.0 / H)
+    stepper = Stepper(m, H, channels=[hand(t[:1])[0], 0.0, 0.0])
+    held = 0
+    for i in range(1, t.size):
+        stepper.step([hand(t[i : i + 1])[0], tyres[i], 0.0])
+        twin = pickle.loads(pickle.dumps(stepper))
+        for element in ("column", "left_damper", "left_king_pin", "rack_friction"):
+            assert twin.torque(element) == stepper.torque(element)
+            # The two know the drive between the samples differently, to third order.
+            assert stepper.torque(element) == pytest.approx(run.torque[element][i], abs=0.02)
+        held += run.sliding["left_king_pin"][i] == 0
+    assert held > 10
+    with pytest.raises(ParameterError, match="no element 'tow'"):
+        stepper.torque("tow")
 
 
 def test_restore_goes_back_and_refuses_what_is_no_state():

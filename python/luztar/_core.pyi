@@ -13,6 +13,8 @@ __all__ = [
     "FixedLag",
     "LineSums",
     "LinearSums",
+    "Mechanism",
+    "MechanismStepper",
     "Moments",
     "PolynomialSums",
     "QuantileSketch",
@@ -30,6 +32,7 @@ __all__ = [
     "fit_linear",
     "fit_polynomial",
     "held_out",
+    "hold_or_slide",
     "huber",
     "instruction_sets",
     "moments_by_label",
@@ -537,6 +540,7 @@ class MechanismStepper:
     @property
     def time_s(self) -> float: ...
     def modes(self) -> list[int]: ...
+    def torques_into(self, torque: NDArray[np.float64]) -> None: ...
     def copy(self) -> MechanismStepper: ...
     def state(self) -> tuple[list[int], list[float]]: ...
     def restore(self, integers: Sequence[int], numbers: Sequence[float]) -> None: ...

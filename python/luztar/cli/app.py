@@ -308,9 +308,9 @@ def simulate(
     json: Json = False,
     debug: Debug = False,
 ) -> int:
-    """Run a steering model: handwheel in, road wheel out; or a mechanism of several bodies along its first channel.
+    """Run a steering model: handwheel in, road wheel out.
 
-    Prints the events (stick, slip, reversal, contact, release) and where the energy went.
+    A mechanism of several bodies runs along its handwheel, or along its first driven node or load. Prints the events (stick, slip, reversal, contact, release) and where the energy went.
     """
     from .simulate import run_simulate
 

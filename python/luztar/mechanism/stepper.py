@@ -118,6 +118,21 @@ class Stepper(Stream):
             channels = vector("channels", channels, minimum=0)
         self._step(channels, self.position, self.speed)
 
+    def torque(self, element: str) -> float:
+        """Return the torque or force along an element; of a friction that holds the one of equilibrium.
+
+        Raises
+        ------
+        ParameterError
+            There is no such element.
+        """
+        names = [e.name for e in self._mechanism.elements]
+        if element not in names:
+            raise ParameterError(f"there is no element '{element}'", "element", f"Known are: {', '.join(names)}.")
+        torques = np.empty(len(names))
+        self._core.torques_into(torques)
+        return float(torques[names.index(element)])
+
     def copy(self) -> Self:
         """Return an independent stepper that stands where this one does."""
         return type(self).__new__(type(self))._hold(self._mechanism, self._settings, self._core.copy())

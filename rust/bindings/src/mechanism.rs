@@ -33,6 +33,8 @@ type TraceParts<'py> = (
     Vec<EventParts>,
     EnergyParts,
 );
+/// Torques, relative accelerations, sets, sweeps, solved.
+type Held = (Vec<f64>, Vec<f64>, usize, usize, bool);
 /// Per element, driven node and load; then stored first and last, turnover, residual.
 type EnergyParts = (Vec<f64>, Vec<f64>, Vec<f64>, [f64; 4]);
 
@@ -288,6 +290,11 @@ impl MechanismStepper {
         self.0.modes().iter().map(|m| i64::from(*m)).collect()
     }
 
+    fn torques_into(&mut self, mut torque: PyReadwriteArray1<'_, f64>) -> PyResult<()> {
+        let torque = torque.as_slice_mut()?;
+        Ok(self.0.torques_into(torque).map_err(CoreError)?)
+    }
+
     fn copy(&self) -> Self {
         self.clone()
     }
@@ -333,7 +340,7 @@ pub fn hold_or_slide(
     low: PyReadonlyArray1<'_, f64>,
     high: PyReadonlyArray1<'_, f64>,
     gauss_seidel: bool,
-) -> PyResult<(Vec<f64>, Vec<f64>, usize, usize, bool)> {
+) -> PyResult<Held> {
     let (matrix, rows) = (matrix.as_slice()?, free.len());
     let (free, low, high) = (free.as_slice()?, low.as_slice()?, high.as_slice()?);
     for (name, got, expected) in [

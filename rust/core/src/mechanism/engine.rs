@@ -113,9 +113,9 @@ impl Engine {
         self.rigid.redundant
     }
 
-    /// The torques of the frictions in the present state: those that slide by their law, those that hold by
-    /// equilibrium.
-    pub fn friction_torques(&mut self, share: f64, out: &mut [f64]) {
+    /// The torque along each element in the present state, at a share of the present step. Of frictions that hold it is
+    /// the one of equilibrium, of assistance what it puts out; frictions that cannot resist are left alone.
+    pub fn torques(&mut self, share: f64, out: &mut [f64]) {
         if self.contacts.any_stuck() {
             let stretch = Stretch {
                 span: &self.span,
@@ -127,11 +127,21 @@ impl Engine {
         }
         let (plan, state) = (&self.plan, &self.state);
         for (i, (friction, &mode)) in plan.frictions.iter().zip(&state.modes).enumerate() {
-            out[i] = if mode == 0 {
+            out[friction.element] = if mode == 0 {
                 self.contacts.held()[i]
             } else {
                 friction.kinetic(f64::from(mode), friction.pair.of(&state.speed))
             };
+        }
+        for spring in &plan.springs {
+            out[spring.element] = spring.torque(&state.place);
+        }
+        for damper in &plan.dampers {
+            let speed = damper.pair.of(&state.speed);
+            out[damper.element] = damper.viscous * speed + damper.curved(speed);
+        }
+        for assist in &plan.assists {
+            out[assist.element] = assist.torque(&state.place);
         }
     }
 

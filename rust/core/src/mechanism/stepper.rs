@@ -19,6 +19,7 @@ use super::trace::require_start;
 pub struct Stepper {
     engine: Engine,
     names: Vec<String>,
+    elements: usize,
     substeps: usize,
     /// Values of the channels one and two steps ago.
     last: Vec<f64>,
@@ -55,6 +56,7 @@ impl Stepper {
         let mut made = Self {
             engine: Engine::new(Plan::new(network), h, Method::ActiveSet),
             names: network.driven().iter().cloned().chain(loads).collect(),
+            elements: network.elements().len(),
             substeps,
             last: channels.to_vec(),
             before_last: channels.to_vec(),
@@ -138,6 +140,31 @@ impl Stepper {
         &self.engine.state.speed[..self.engine.plan.bodies]
     }
 
+    /// How many elements the mechanism has.
+    #[must_use]
+    pub fn elements(&self) -> usize {
+        self.elements
+    }
+
+    /// Writes the torque along each element; of frictions that hold the one of equilibrium, of assistance what it puts
+    /// out. Nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Error::Length`] unless there is room for one per element.
+    pub fn torques_into(&mut self, out: &mut [f64]) -> Result<(), Error> {
+        if out.len() != self.elements {
+            return Err(Error::Length {
+                name: "torques",
+                expected: format!("{}", self.elements),
+                got: out.len(),
+            });
+        }
+        out.fill(0.0);
+        let share = if self.steps == 0 { 0.0 } else { 1.0 };
+        self.engine.torques(share, out);
+        Ok(())
+    }
+
     /// For each friction that can resist: 0 where it holds, else the direction in which it slides.
     #[must_use]
     pub fn modes(&self) -> &[i8] {
@@ -151,7 +178,11 @@ impl Stepper {
         let mut integers = vec![i64::from(self.known), self.steps.cast_signed()];
         integers.extend(state.modes.iter().map(|m| i64::from(*m)));
         let parts = [&state.place, &state.speed, &self.last, &self.before_last];
-        (integers, parts.into_iter().flatten().copied().collect())
+        let mut numbers: Vec<f64> = parts.into_iter().flatten().copied().collect();
+        for span in &self.engine.span {
+            numbers.extend([span.start, span.middle, span.end]);
+        }
+        (integers, numbers)
     }
 
     /// Goes on from what [`Stepper::state`] of a stepper of the same mechanism gave.
@@ -160,7 +191,7 @@ impl Stepper {
     /// [`Error::Length`] or [`Error::NonFinite`] for what is no such state; this one is then as it was.
     pub fn restore(&mut self, integers: &[i64], numbers: &[f64]) -> Result<(), Error> {
         let (nodes, channels) = (self.engine.plan.nodes(), self.last.len());
-        let wanted = 2 * nodes + 2 * channels;
+        let wanted = 2 * nodes + 5 * channels;
         let modes = self.engine.state.modes.len();
         let sound = integers.len() == modes + 2
             && integers[2..].iter().all(|m| (-1..=1).contains(m))
@@ -177,8 +208,16 @@ impl Stepper {
         let modes: Vec<i8> = integers[2..].iter().map(|m| *m as i8).collect();
         let (place, rest) = numbers.split_at(nodes);
         let (speed, rest) = rest.split_at(nodes);
-        let (last, before_last) = rest.split_at(channels);
+        let (last, rest) = rest.split_at(channels);
+        let (before_last, spans) = rest.split_at(channels);
         self.engine.restore(place, speed, &modes);
+        for (span, values) in self.engine.span.iter_mut().zip(spans.chunks_exact(3)) {
+            *span = Parabola {
+                start: values[0],
+                middle: values[1],
+                end: values[2],
+            };
+        }
         self.last.copy_from_slice(last);
         self.before_last.copy_from_slice(before_last);
         self.known = integers[0] as u8;

@@ -156,7 +156,7 @@ pub fn trace(
         events: Vec::new(),
         ledger: Ledger::default(),
     };
-    let mut held = vec![0.0; out.frictions.len()];
+    let mut torque = vec![0.0; elements];
     for sample in 0..samples {
         for i in 0..bodies {
             out.place[i * samples + sample] = engine.state.place[i];
@@ -166,20 +166,9 @@ pub fn trace(
             out.modes[i * samples + sample] = *mode;
         }
         out.redundant[sample] = engine.redundant();
-        engine.friction_torques(if sample == 0 { 0.0 } else { 1.0 }, &mut held);
-        let (plan, state) = (&engine.plan, &engine.state);
-        for (friction, torque) in plan.frictions.iter().zip(&held) {
-            out.torque[friction.element * samples + sample] = *torque;
-        }
-        for spring in &plan.springs {
-            out.torque[spring.element * samples + sample] = spring.torque(&state.place);
-        }
-        for damper in &plan.dampers {
-            let v = damper.pair.of(&state.speed);
-            out.torque[damper.element * samples + sample] = damper.viscous * v + damper.curved(v);
-        }
-        for assist in &plan.assists {
-            out.torque[assist.element * samples + sample] = assist.torque(&state.place);
+        engine.torques(if sample == 0 { 0.0 } else { 1.0 }, &mut torque);
+        for (row, torque) in torque.iter().enumerate() {
+            out.torque[row * samples + sample] = *torque;
         }
         if sample + 1 == samples {
             break;
