@@ -21,6 +21,8 @@ pub(super) struct Parabola {
     pub start: f64,
     pub middle: f64,
     pub end: f64,
+    /// Third derivative, per sub-step cubed: what a parabola does not know of its neighbours.
+    pub third: f64,
 }
 
 impl Parabola {
@@ -42,9 +44,9 @@ impl Parabola {
         self.first() + 2.0 * share * self.second()
     }
 
-    /// Second derivative, per sub-step squared.
-    pub fn bend(self) -> f64 {
-        2.0 * self.second()
+    /// Second derivative there, per sub-step squared: that of the parabola in the middle, and its change to either side.
+    pub fn bend(self, share: f64) -> f64 {
+        2.0 * self.second() + self.third * (share - 0.5)
     }
 }
 
@@ -120,10 +122,19 @@ impl Channels {
     pub(super) fn read(&self, step: usize, out: &mut [Parabola]) {
         for (row, out) in self.rows.iter().zip(out) {
             let here = &row[2 * step..2 * step + 3];
+            // Four values half a sub-step apart, the fourth from the next sub-step or, in the last one, the one before.
+            let beyond = row
+                .get(2 * step + 3)
+                .map(|next| [here[0], here[1], here[2], *next]);
+            let before = || (step > 0).then(|| [row[2 * step - 1], here[0], here[1], here[2]]);
+            let third = beyond
+                .or_else(before)
+                .map_or(0.0, |[a, b, c, d]| 8.0 * ((d - a) - 3.0 * (c - b)));
             *out = Parabola {
                 start: here[0],
                 middle: here[1],
                 end: here[2],
+                third,
             };
         }
     }

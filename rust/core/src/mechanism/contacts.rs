@@ -6,6 +6,8 @@ use super::forces::{Pair, Plan};
 use super::rigid::Rigid;
 use super::smooth::{State, Stretch, load};
 
+// Frictions that break away with another, as those of a left and a right wheel do: shares of a stretch.
+const TOGETHER: f64 = 1e-6;
 // Halvings of a step that find a break-away where torques are not unique: to 1e-12 of the step.
 const HALVINGS: usize = 40;
 
@@ -28,17 +30,10 @@ pub(super) struct Contacts {
     held: Vec<f64>,
     held_first: Vec<f64>,
     right: Vec<f64>,
+    /// Directions into which frictions break away, as found last.
+    loose: Vec<i8>,
     broken: Vec<bool>,
     qp: BoxQp,
-}
-
-/// A break-away inside a stretch.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BreakAway {
-    /// Share of the stretch.
-    pub at: f64,
-    /// Which friction, and into which direction; none if several go at once (see [`Contacts::slides`]).
-    pub single: Option<(usize, i8)>,
 }
 
 impl Contacts {
@@ -62,6 +57,7 @@ impl Contacts {
             held: vec![0.0; c],
             held_first: vec![0.0; c],
             right: vec![0.0; c],
+            loose: vec![0; c],
             broken: vec![false; c],
             qp: BoxQp::new(c),
         }
@@ -101,7 +97,7 @@ impl Contacts {
             *torque /= inertia;
         }
         for i in 0..plan.driven {
-            self.nodes[n + i] = stretch.span[i].bend() / (stretch.h * stretch.h);
+            self.nodes[n + i] = stretch.span[i].bend(share) / (stretch.h * stretch.h);
         }
         self.nodes[n + plan.driven] = 0.0;
         for (free, friction) in self.free.iter_mut().zip(&plan.frictions) {
@@ -146,14 +142,15 @@ impl Contacts {
         (0..stuck.len()).all(|row| self.qp.slides(row) == 0)
     }
 
-    /// The first break-away in a stretch between two states, if there is one. `pinned` ones are not looked at.
+    /// The share of a stretch between two states at which the first break-away happens, if there is one; which frictions
+    /// then go, and where to, is in [`Contacts::loose`]. `pinned` ones are not looked at.
     pub fn break_away(
         &mut self,
         plan: &Plan,
         (first, last): (&State, &State),
         stretch: &Stretch<'_>,
         pinned: &[bool],
-    ) -> Option<BreakAway> {
+    ) -> Option<f64> {
         if self.stuck.is_empty() {
             return None;
         }
@@ -171,23 +168,29 @@ impl Contacts {
         std::mem::swap(&mut self.held, &mut self.held_first);
         self.hold(plan, first, stretch, stretch.from);
         std::mem::swap(&mut self.held, &mut self.held_first);
-        let mut found: Option<BreakAway> = None;
+        let mut earliest = 1.0;
+        self.loose.fill(0);
         for &i in &self.stuck {
             let (before, after) = (self.held_first[i], self.held[i]);
-            if !over(i, after) {
-                continue;
-            }
-            let direction = after.signum();
-            let limit = direction * plan.frictions[i].held(direction);
-            let at = ((limit - before) / (after - before)).clamp(0.0, 1.0);
-            // Over the limit from the start, and no interpolation: at once.
-            let at = if at.is_nan() { 0.0 } else { at };
-            if found.is_none_or(|f| at < f.at) {
-                let single = Some((i, if direction > 0.0 { 1 } else { -1 }));
-                found = Some(BreakAway { at, single });
+            if over(i, after) {
+                let direction = after.signum();
+                let limit = direction * plan.frictions[i].held(direction);
+                let at = ((limit - before) / (after - before)).clamp(0.0, 1.0);
+                // Over the limit from the start, and no interpolation: at once.
+                let at = if at.is_nan() { 0.0 } else { at };
+                self.loose[i] = if direction > 0.0 { 1 } else { -1 };
+                self.right[i] = at;
+                if at < earliest {
+                    earliest = at;
+                }
             }
         }
-        found
+        for (loose, at) in self.loose.iter_mut().zip(&self.right) {
+            if *at > earliest + TOGETHER {
+                *loose = 0;
+            }
+        }
+        Some(earliest)
     }
 
     /// The same where the torques are not unique: whether anything holds is asked of the programme.
@@ -197,7 +200,7 @@ impl Contacts {
         first: &State,
         stretch: &Stretch<'_>,
         pinned: &[bool],
-    ) -> Option<BreakAway> {
+    ) -> Option<f64> {
         let holds = |contacts: &Self| {
             (contacts.stuck.iter().enumerate())
                 .all(|(row, &i)| contacts.qp.slides(row) == 0 || pinned[i])
@@ -219,16 +222,16 @@ impl Contacts {
             }
         }
         self.solve_stuck(plan, high);
-        Some(BreakAway {
-            at: high,
-            single: None,
-        })
+        self.loose.fill(0);
+        for (row, &i) in self.stuck.iter().enumerate() {
+            self.loose[i] = self.qp.slides(row);
+        }
+        Some(high)
     }
 
-    /// Which of the frictions that held slide, after [`Contacts::break_away`] found several at once.
-    pub fn slides(&self) -> impl Iterator<Item = (usize, i8)> + '_ {
-        let rows = self.stuck.iter().enumerate();
-        rows.map(|(row, &i)| (i, self.qp.slides(row)))
+    /// For each friction the direction into which it breaks away, 0 if it does not, as [`Contacts::break_away`] found.
+    pub fn loose(&self) -> &[i8] {
+        &self.loose
     }
 
     /// Decides for the frictions of mode 0 in a state whether they hold or slide, and writes their modes. What breaks

@@ -32,10 +32,8 @@ impl Watch for Nobody {
 enum First {
     /// A friction's relative speed is 0.
     Stop(usize),
-    /// One that held breaks away.
-    Break(usize, i8),
-    /// Several at once do.
-    BreakMany,
+    /// What held breaks away.
+    Break,
 }
 
 // Frictions that stop with another, as those of a left and a right wheel do: what is left of their relative speed, as
@@ -264,13 +262,9 @@ impl Engine {
             &self.pinned,
         );
         if let Some(breaks) = breaks
-            && found.as_ref().is_none_or(|f| breaks.at < f.0)
+            && found.as_ref().is_none_or(|f| breaks < f.0)
         {
-            let what = match breaks.single {
-                Some((i, direction)) => First::Break(i, direction),
-                None => First::BreakMany,
-            };
-            found = Some((breaks.at, what));
+            found = Some((breaks, First::Break));
         }
         found
     }
@@ -280,7 +274,7 @@ impl Engine {
     fn locate(&mut self, from: f64, at: f64, first: &First) -> f64 {
         let stopping = match *first {
             First::Stop(i) => Some((self.plan.frictions[i].pair, f64::from(self.state.modes[i]))),
-            First::Break(..) | First::BreakMany => None,
+            First::Break => None,
         };
         let speed = |nodes: &[f64]| stopping.map_or(0.0, |(pair, s)| s * pair.of(nodes));
         let (before, after) = (speed(&self.state.speed), speed(&self.smooth.end.speed));
@@ -341,11 +335,10 @@ impl Engine {
                     }
                 }
             }
-            First::Break(i, direction) => self.state.modes[i] = direction,
-            First::BreakMany => {
-                for (i, direction) in self.contacts.slides() {
-                    if direction != 0 {
-                        self.state.modes[i] = direction;
+            First::Break => {
+                for (mode, loose) in self.state.modes.iter_mut().zip(self.contacts.loose()) {
+                    if *loose != 0 {
+                        *mode = *loose;
                     }
                 }
             }

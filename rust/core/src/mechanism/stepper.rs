@@ -69,6 +69,7 @@ impl Stepper {
                 start: *value,
                 middle: *value,
                 end: *value,
+                third: 0.0,
             };
         }
         made.engine.start(start.0, start.1);
@@ -102,6 +103,7 @@ impl Stepper {
                     start: old,
                     middle,
                     end: new,
+                    third: 0.0,
                 };
                 self.engine.span[i] = if self.substeps == 1 {
                     whole
@@ -110,6 +112,7 @@ impl Stepper {
                         start: whole.at(sub as f64 / parts),
                         middle: whole.at((sub as f64 + 0.5) / parts),
                         end: whole.at((sub as f64 + 1.0) / parts),
+                        third: 0.0,
                     }
                 };
             }
@@ -216,6 +219,7 @@ impl Stepper {
                 start: values[0],
                 middle: values[1],
                 end: values[2],
+                third: 0.0,
             };
         }
         self.last.copy_from_slice(last);
