@@ -121,6 +121,20 @@ def test_a_passive_mechanism_gives_back_no_more_than_it_got():
         assert all(e[x.name] <= 0.0 for x in m.elements)
 
 
+def test_a_symmetric_mechanism_moves_symmetrically_to_the_bit():
+    """Both wheels stop, turn and break away in the same step: they are decided together."""
+    t = np.arange(2001) / 500.0
+    drive = {"handwheel": 1.1 * np.sin(4.3 * t) + 0.4 * np.sin(11.0 * t)}
+    for static in (None, 6.0):
+        run = simulate(steering_mechanism(king_pin_static_nm=static), drive, sample_rate_hz=500.0)
+        for name in ("position", "speed"):
+            assert (getattr(run, name)["left_wheel"] == getattr(run, name)["right_wheel"]).all()
+        left, right = (
+            [(e.time_s, e.kind) for e in run.events if e.element == f"{side}_king_pin"] for side in ("left", "right")
+        )
+        assert left == right and len(left) > 10
+
+
 def test_a_whole_steering_held_by_its_frictions_stays_for_ever():
     m = steering_mechanism()
     n = 20_001

@@ -7,7 +7,17 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 
-from luztar.mechanism import Body, Damper, Friction, Load, Mechanism, Spring, simulate, steering_torque_driven
+from luztar.mechanism import (
+    Body,
+    Damper,
+    Friction,
+    Load,
+    Mechanism,
+    Spring,
+    simulate,
+    single_mass,
+    steering_torque_driven,
+)
 from mechanism_parts import STEPS, chain, observed_order, push
 
 SECONDS = 3.0
@@ -60,6 +70,20 @@ def test_order_two_through_stick_slip_and_reversals(case):
     assert observed_order(errors) >= 1.9, errors
     # Of the size of (h w)^2 with the 16 rad/s of the chain.
     assert errors[-1] < 5e-5
+
+
+def test_a_break_away_from_a_belt_that_accelerates_is_found_to_second_order():
+    """Static above kinetic friction, and no spring: the belt's acceleration alone breaks the mass loose."""
+    m = single_mass(kinetic=0.6, static=1.0, on_belt=True)
+    # An acceleration of 1.8 sin(3 t) against the 1.0 that static friction gives.
+    exact = np.arcsin(1.0 / 1.8) / 3.0
+    for steps in STEPS:
+        h = SECONDS / steps
+        drive = {"belt": -0.2 * np.sin(3.0 * h * np.arange(steps + 1))}
+        run = simulate(m, drive, sample_rate_hz=1.0 / h, substeps=1, start_speed={"mass": -0.6})
+        slips = [e.time_s for e in run.events if e.kind == "slip"]
+        # A single instant: its error is h^2 times a factor that depends on where in a step it lies, 0.2 to 0.6.
+        assert abs(slips[0] - exact) <= h * h
 
 
 def test_the_chain_against_a_general_solver_with_events():

@@ -12,7 +12,14 @@ import numpy as np
 import pytest
 
 from luztar.errors import ParameterError
-from luztar.mechanism import Stepper, simulate, simulate_lanes, steering_mechanism, steering_torque_driven
+from luztar.mechanism import (
+    Stepper,
+    simulate,
+    simulate_lanes,
+    steering_mechanism,
+    steering_torque_driven,
+    summarise_lanes,
+)
 from mechanism_parts import chain, push
 
 H = 1e-3
@@ -195,11 +202,31 @@ def test_the_parameters_that_follow_others_do_so_in_lanes():
 
 def test_progress_is_told_and_counts_all_lanes():
     seen = []
-    simulate_lanes(
-        chain(),
-        {"k1.stiffness_nm_per_rad": np.linspace(20.0, 40.0, 300)},
-        {"push": np.zeros(3)},
-        sample_rate_hz=500.0,
-        progress=lambda done, of: seen.append((done, of)),
-    )
-    assert seen == [(256, 300), (300, 300)]
+    # A chunk holds 600 000 steps: 250 lanes of 2400.
+    drives, levels = {"push": np.zeros(2400)}, {"k1.stiffness_nm_per_rad": np.linspace(20.0, 40.0, 300)}
+    options = {"sample_rate_hz": 500.0, "substeps": 1, "progress": lambda done, of: seen.append((done, of))}
+    simulate_lanes(chain(), levels, drives, **options)
+    assert seen == [(250, 300), (300, 300)]
+    levels["k1.stiffness_nm_per_rad"][270] = 1e9
+    with pytest.raises(ParameterError, match="lane 270, k1"):
+        simulate_lanes(chain(), levels, drives, **options)
+
+
+def test_a_summary_is_that_of_the_samples():
+    t = np.arange(801) / 400.0
+    levels = {"king_pin.kinetic_nm": np.array([0.0, 5.0, 500.0]), "king_pin.static_nm": np.array([0.0, 8.0, 500.0])}
+    m, drives = steering_torque_driven(king_pin_static_nm=8.1), {"hand": 3.0 * np.sin(5.0 * t)}
+    whole = simulate_lanes(m, levels, drives, sample_rate_hz=400.0)
+    kept = summarise_lanes(m, levels, drives, sample_rate_hz=400.0)
+    for body in ("handwheel", "roadwheel"):
+        q, v = whole.position[body], whole.speed[body]
+        found = {
+            "last": q[:, -1],
+            "last_speed": v[:, -1],
+            "peak": np.abs(q).max(axis=1),
+            "rms": np.sqrt(np.mean(q**2, axis=1)),
+            "at_rest_share": np.mean(v == 0.0, axis=1),
+        }
+        for name, values in found.items():
+            np.testing.assert_allclose(kept[body][name], values, rtol=1e-14, atol=0.0)
+    assert kept["roadwheel"]["at_rest_share"][2] == 1.0

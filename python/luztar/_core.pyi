@@ -518,11 +518,26 @@ class Mechanism:
         start: NDArray[np.float64],
         start_speed: NDArray[np.float64],
         *,
+        first: int,
         sample_rate_hz: float,
         substeps: int,
         place: NDArray[np.float64],
         speed: NDArray[np.float64],
     ) -> None: ...
+    def summarise(
+        self,
+        values: NDArray[np.float64],
+        channels: NDArray[np.float64],
+        start: NDArray[np.float64],
+        start_speed: NDArray[np.float64],
+        *,
+        first: int,
+        sample_rate_hz: float,
+        substeps: int,
+        out: NDArray[np.float64],
+    ) -> None: ...
+    @staticmethod
+    def summary_names() -> list[str]: ...
 
 @final
 class MechanismStepper:

@@ -310,7 +310,9 @@ def simulate(
 ) -> int:
     """Run a steering model: handwheel in, road wheel out.
 
-    A mechanism of several bodies runs along its handwheel, or along its first driven node or load. Prints the events (stick, slip, reversal, contact, release) and where the energy went.
+    A mechanism of several bodies runs along its handwheel, or along its first driven node or load.
+
+    Prints the events (stick, slip, reversal, contact, release) and where the energy went.
     """
     from .simulate import run_simulate
 

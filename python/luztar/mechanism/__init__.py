@@ -7,6 +7,7 @@ relative speed is exactly 0; where static friction is not unique the motion stil
 
 from .batch import Lanes as Lanes
 from .batch import simulate_lanes as simulate_lanes
+from .batch import summarise_lanes as summarise_lanes
 from .indeterminacy import Indeterminacy as Indeterminacy
 from .manoeuvres import Manoeuvre as Manoeuvre
 from .manoeuvres import ReductionError as ReductionError

@@ -164,7 +164,7 @@ impl Mechanism {
     }
 
     /// `values` (lanes, parameters); `place` and `speed` (lanes, bodies, samples), written.
-    #[pyo3(signature = (values, channels, start, start_speed, *, sample_rate_hz, substeps, place, speed))]
+    #[pyo3(signature = (values, channels, start, start_speed, *, first, sample_rate_hz, substeps, place, speed))]
     #[allow(clippy::too_many_arguments)]
     fn simulate(
         &self,
@@ -173,6 +173,7 @@ impl Mechanism {
         channels: PyReadonlyArray2<'_, f64>,
         start: PyReadonlyArray1<'_, f64>,
         start_speed: PyReadonlyArray1<'_, f64>,
+        first: usize,
         sample_rate_hz: f64,
         substeps: usize,
         mut place: PyReadwriteArray3<'_, f64>,
@@ -182,6 +183,7 @@ impl Mechanism {
         let lanes = core::Lanes {
             network: &self.0,
             values: values.as_slice()?,
+            first,
             place: start.as_slice()?,
             speed: start_speed.as_slice()?,
         };
@@ -189,6 +191,40 @@ impl Mechanism {
         py.detach(|| core::simulate(lanes, &channels, place, speed))
             .map_err(CoreError)?;
         Ok(())
+    }
+
+    /// `out` (lanes, bodies, names), written.
+    #[pyo3(signature = (values, channels, start, start_speed, *, first, sample_rate_hz, substeps, out))]
+    #[allow(clippy::too_many_arguments)]
+    fn summarise(
+        &self,
+        py: Python<'_>,
+        values: PyReadonlyArray2<'_, f64>,
+        channels: PyReadonlyArray2<'_, f64>,
+        start: PyReadonlyArray1<'_, f64>,
+        start_speed: PyReadonlyArray1<'_, f64>,
+        first: usize,
+        sample_rate_hz: f64,
+        substeps: usize,
+        mut out: PyReadwriteArray3<'_, f64>,
+    ) -> PyResult<()> {
+        let channels = self.channels(&channels, sample_rate_hz, substeps)?;
+        let lanes = core::Lanes {
+            network: &self.0,
+            values: values.as_slice()?,
+            first,
+            place: start.as_slice()?,
+            speed: start_speed.as_slice()?,
+        };
+        let out = out.as_slice_mut()?;
+        py.detach(|| core::summarise(lanes, &channels, out))
+            .map_err(CoreError)?;
+        Ok(())
+    }
+
+    #[staticmethod]
+    fn summary_names() -> Vec<&'static str> {
+        core::SUMMARY.to_vec()
     }
 }
 

@@ -21,7 +21,7 @@ mod stability;
 mod stepper;
 mod trace;
 
-pub use batch::{Lanes, simulate};
+pub use batch::{Lanes, SUMMARY, simulate, summarise};
 pub use box_qp::{BoxQp, Method, Outcome};
 pub use channels::Channels;
 pub use ledger::Ledger;

@@ -324,13 +324,20 @@ impl Engine {
     fn happens(&mut self, first: &First) {
         match *first {
             First::Stop(stops) => {
-                for i in 0..self.plan.frictions.len() {
-                    let (pair, s) = (self.plan.frictions[i].pair, f64::from(self.state.modes[i]));
-                    let (before, now) = (
-                        s * pair.of(&self.smooth.end.speed),
-                        s * pair.of(&self.state.speed),
+                let left = |engine: &Self, i: usize| {
+                    let (pair, s) = (
+                        engine.plan.frictions[i].pair,
+                        f64::from(engine.state.modes[i]),
                     );
-                    if i == stops || (s != 0.0 && now <= TOGETHER * before) {
+                    let before = s * pair.of(&engine.smooth.end.speed);
+                    (s * pair.of(&engine.state.speed), before)
+                };
+                // Twins have the same left over as the one that was located.
+                let (now, before) = left(self, stops);
+                let share = TOGETHER.max((1.0 + TOGETHER) * now / before);
+                for i in 0..self.plan.frictions.len() {
+                    let (now, before) = left(self, i);
+                    if i == stops || (self.state.modes[i] != 0 && now <= share * before) {
                         self.stop(i);
                     }
                 }
