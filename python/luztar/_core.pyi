@@ -509,6 +509,7 @@ class Mechanism:
         NDArray[np.int8],
         NDArray[np.bool_],
         list[tuple[float, int, str, float]],
+        int,
         _EnergyParts,
     ]: ...
     def simulate(

@@ -61,6 +61,8 @@ class MechanismRun:
         Where more frictions hold than it takes: their torques are then not unique (:attr:`indeterminate`), the motion
         is.
     events : tuple of Event
+    crowded_steps : int
+        Steps in which more happened than can be located; those are of first order.
     energy_j : mapping of str to float
         For each driven node, load and element the energy it has put in (a spring that stores and a friction that heats
         are negative), ``stored_first``, ``stored_last`` (motion and springs), ``turnover`` and ``residual``.
@@ -74,6 +76,7 @@ class MechanismRun:
     sliding: Mapping[str, np.ndarray]
     redundant: np.ndarray
     events: tuple[Event, ...]
+    crowded_steps: int
     energy_j: Mapping[str, float]
 
     @property
@@ -126,6 +129,7 @@ class MechanismRun:
             "torque": {name: row.tolist() for name, row in self.torque.items()},
             "sliding": {name: row.tolist() for name, row in self.sliding.items()},
             "events": [e.to_dict() for e in self.events],
+            "crowded_steps": self.crowded_steps,
             "energy_j": dict(self.energy_j),
             "balanced": self.balanced,
             "indeterminate": None if indeterminate is None else indeterminate.to_dict(),
@@ -150,6 +154,8 @@ class MechanismRun:
         spent = {n: v for n, v in e.items() if n not in ("stored_first", "stored_last", "turnover", "residual")}
         lines.append("energy: " + ", ".join(f"{n} {v:.4g} J" for n, v in spent.items() if v != 0.0))
         lines.append(f"residual {e['residual']:.2g} J of {e['turnover']:.4g} J turned over")
+        if self.crowded_steps:
+            lines.append(f"{self.crowded_steps} steps held more events than can be located: take more substeps.")
         if not self.balanced:
             lines.append("The energy does not add up: take more substeps.")
         found = self.indeterminate

@@ -75,7 +75,7 @@ def simulate(
     rows = door.channels(mechanism, drives or {}, samples)
     if solver not in SOLVERS:
         raise ParameterError(f"there is no solver {solver!r}", "solver", f"Known are: {', '.join(SOLVERS)}.")
-    place, speed, torque, frictions, modes, redundant, events, energy = mechanism._network.trace(
+    place, speed, torque, frictions, modes, redundant, events, crowded, energy = mechanism._network.trace(
         rows,
         door.by_body("start", mechanism, start),
         door.by_body("start_speed", mechanism, start_speed),
@@ -97,6 +97,7 @@ def simulate(
         sliding=MappingProxyType({elements[e]: row for e, row in zip(frictions, modes, strict=True)}),
         redundant=redundant,
         events=tuple(Event(t, elements[e], kind, int(direction)) for t, e, kind, direction in events),
+        crowded_steps=crowded,
         energy_j=MappingProxyType(
             {
                 **{name: -value for name, value in zip(elements, by_element, strict=True)},

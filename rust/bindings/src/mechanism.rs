@@ -22,7 +22,7 @@ type ElementParts = (
 type Table<'py> = Bound<'py, PyArray2<f64>>;
 /// Time, element, kind, direction.
 type EventParts = (f64, usize, &'static str, f64);
-/// Place, speed, torque; frictions, their modes, redundant samples; events; energies.
+/// Place, speed, torque; frictions, their modes, redundant samples; events, crowded steps; energies.
 type TraceParts<'py> = (
     Table<'py>,
     Table<'py>,
@@ -31,6 +31,7 @@ type TraceParts<'py> = (
     Bound<'py, PyArray2<i8>>,
     Bound<'py, PyArray1<bool>>,
     Vec<EventParts>,
+    usize,
     EnergyParts,
 );
 /// Torques, relative accelerations, sets, sweeps, solved.
@@ -159,6 +160,7 @@ impl Mechanism {
             made.modes.into_pyarray(py).reshape([frictions, samples])?,
             made.redundant.into_pyarray(py),
             events,
+            made.crowded_steps,
             (l.element, l.driven, l.load, totals),
         ))
     }

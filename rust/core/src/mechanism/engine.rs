@@ -14,10 +14,12 @@ use super::smooth::{Smooth, State, Stretch, drive};
 
 /// Who looks on while a step is made.
 pub(super) trait Watch {
-    /// A stretch went from one state to another; `held` are the torques of what holds, where they are looked at.
+    /// A stretch went from one state to another, the frictions in the modes of the first.
     fn stretch(&mut self, plan: &Plan, from: &State, to: &State, stretch: &Stretch<'_>);
     /// A friction changed its mode at a share of the step.
     fn change(&mut self, friction: usize, from: i8, to: i8, share: f64);
+    /// More happened in the step than can be located.
+    fn crowded(&mut self);
 }
 
 /// Nobody.
@@ -26,6 +28,7 @@ pub(super) struct Nobody;
 impl Watch for Nobody {
     fn stretch(&mut self, _: &Plan, _: &State, _: &State, _: &Stretch<'_>) {}
     fn change(&mut self, _: usize, _: i8, _: i8, _: f64) {}
+    fn crowded(&mut self) {}
 }
 
 /// What happens first in a stretch.
@@ -208,6 +211,7 @@ impl Engine {
             from,
             to: 1.0,
         };
+        watch.crowded();
         self.before.copy_from_slice(&self.state.modes);
         self.moreau
             .advance(&self.plan, &self.state, &stretch, &mut self.smooth.end);

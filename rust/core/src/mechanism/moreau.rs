@@ -132,3 +132,106 @@ impl Moreau {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::channels::Parabola;
+    use super::super::network::{Body, Element, End, Law, Network, Node};
+    use super::*;
+
+    fn end(node: Node) -> End {
+        End { node, ratio: 1.0 }
+    }
+
+    fn friction(name: &str, a: Node, b: Node, level: f64) -> Element {
+        Element {
+            name: name.to_owned(),
+            a: end(a),
+            b: end(b),
+            law: Law::Friction {
+                level,
+                difference: 0.0,
+                stribeck: 0.0,
+                stribeck_speed: 0.0,
+                stiction: 0.0,
+            },
+        }
+    }
+
+    /// Speeds after one step of 0.1 s of bodies of 2 and 3 kg m2 under loads, and the modes.
+    fn step(elements: Vec<Element>, speed: [f64; 2], loads: [f64; 2]) -> (Vec<f64>, Vec<i8>) {
+        let body = |name: &str, inertia| Body {
+            name: name.to_owned(),
+            inertia,
+        };
+        let network = Network::new(
+            vec![body("one", 2.0), body("two", 3.0)],
+            vec![],
+            vec![("f1".to_owned(), 0), ("f2".to_owned(), 1)],
+            elements,
+        )
+        .expect("sound");
+        let plan = Plan::new(&network);
+        let modes = plan
+            .frictions
+            .iter()
+            .map(|f| f.pair.of(&[speed[0], speed[1], 0.0]).signum() as i8)
+            .collect();
+        let state = State {
+            place: vec![0.0; 3],
+            speed: vec![speed[0], speed[1], 0.0],
+            modes,
+        };
+        let span = loads.map(|value| Parabola {
+            start: value,
+            middle: value,
+            end: value,
+            third: 0.0,
+        });
+        let stretch = Stretch {
+            span: &span,
+            h: 0.1,
+            from: 0.0,
+            to: 1.0,
+        };
+        let mut after = state.clone();
+        Moreau::new(&plan, Method::ActiveSet).advance(&plan, &state, &stretch, &mut after);
+        (after.speed, after.modes)
+    }
+
+    #[test]
+    fn one_body_takes_the_soft_threshold() {
+        // v+ = luz(v + h M / I, h F / I) / (1 + h mu / I).
+        for (v, m) in [(0.4, 1.0), (-0.3, 0.2), (0.02, -0.4), (0.0, 3.0)] {
+            let elements = vec![
+                friction("f", Node::Body(0), Node::Ground, 1.5),
+                Element {
+                    name: "d".to_owned(),
+                    a: end(Node::Body(0)),
+                    b: end(Node::Ground),
+                    law: Law::Damper {
+                        viscous: 4.0,
+                        drag: 0.0,
+                    },
+                },
+                // What joins the other body takes no part.
+                friction("join", Node::Body(1), Node::Body(0), 0.0),
+            ];
+            let (speed, modes) = step(elements, [v, 0.0], [m, 0.0]);
+            // The damper acts on the old speed and on what is gained: (2 + 0.4) dv = 0.1 (m - 4 v).
+            let free = v + 0.1 * (m - 4.0 * v) / 2.4;
+            let wanted = (free.abs() - 0.1 * 1.5 / 2.4).max(0.0) * free.signum();
+            assert!((speed[0] - wanted).abs() < 1e-15, "{v} {m}");
+            assert_eq!(modes[0] == 0, wanted == 0.0);
+        }
+    }
+
+    #[test]
+    fn two_bodies_that_their_friction_can_hold_go_on_as_one() {
+        let elements = vec![friction("f", Node::Body(0), Node::Body(1), 9.0)];
+        let (speed, modes) = step(elements, [0.5, 0.1], [0.4, -1.0]);
+        let together = (2.0 * 0.5 + 3.0 * 0.1 + 0.1 * (0.4 - 1.0)) / 5.0;
+        assert!((speed[0] - together).abs() < 1e-15 && (speed[1] - together).abs() < 1e-15);
+        assert_eq!(modes, [0]);
+    }
+}

@@ -44,6 +44,8 @@ pub struct Trace {
     pub redundant: Vec<bool>,
     /// What happened, in order.
     pub events: Vec<Event>,
+    /// Steps in which more happened than can be located: first order, by Moreau and Jean.
+    pub crowded_steps: usize,
     /// Where the energy went.
     pub ledger: Ledger,
 }
@@ -56,6 +58,7 @@ struct Scribe {
     time_s: f64,
     h: f64,
     frictions: Vec<usize>,
+    crowded_steps: usize,
 }
 
 impl Watch for Scribe {
@@ -79,6 +82,10 @@ impl Watch for Scribe {
                 });
             }
         }
+    }
+
+    fn crowded(&mut self) {
+        self.crowded_steps += 1;
     }
 
     fn change(&mut self, friction: usize, from: i8, to: i8, share: f64) {
@@ -141,6 +148,7 @@ pub fn trace(
         time_s: 0.0,
         h: channels.step_s(),
         frictions: frictions.clone(),
+        crowded_steps: 0,
     };
     let mut engine = Engine::new(plan, channels.step_s(), method);
     channels.read(0, &mut engine.span);
@@ -154,6 +162,7 @@ pub fn trace(
         redundant: vec![false; samples],
         frictions,
         events: Vec::new(),
+        crowded_steps: 0,
         ledger: Ledger::default(),
     };
     let mut torque = vec![0.0; elements];
@@ -184,6 +193,7 @@ pub fn trace(
     scribe.books.close(&engine.plan, &engine.state);
     scribe.events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     out.events = scribe.events;
+    out.crowded_steps = scribe.crowded_steps;
     out.ledger = scribe.books.ledger;
     Ok(out)
 }
