@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import luztar
 from luztar.errors import ModelError, ParameterError
 from luztar.mechanism import (
     Assistance,
@@ -142,6 +143,13 @@ def test_a_file_that_makes_no_sense_is_refused_with_its_place(text, words, tmp_p
         Mechanism.load(path)
 
 
+def test_a_model_to_fit_is_told_from_a_mechanism(tmp_path):
+    path = tmp_path / "m.toml"
+    ALL["fig3"].save(path)
+    with pytest.raises(ModelError, match="luztar.mechanism.Mechanism.load"):
+        luztar.Model.load(path)
+
+
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(ModelError, match="nowhere.toml"):
         Mechanism.load(tmp_path / "nowhere.toml")
@@ -179,6 +187,17 @@ def test_the_missing_motion_and_unequal_lengths_are_named():
         simulate(m, {"tyre_left": np.zeros(9)}, sample_rate_hz=100.0)
     with pytest.raises(ParameterError, match="tyre_left has 8 samples, others 9"):
         simulate(m, {"handwheel": np.zeros(9), "tyre_left": np.zeros(8)}, sample_rate_hz=100.0)
+
+
+@pytest.mark.parametrize(("inertia", "stiffness"), [(1e-300, 1e300), (5e-324, 1.0), (1e300, 1e-300), (1.0, 1e308)])
+def test_numbers_at_the_end_of_the_doubles_end_in_a_run_or_an_error(inertia, stiffness):
+    m = Mechanism((Body("one", inertia), Body("two", 1.0)), (Spring("k", "one", "two", stiffness=stiffness),))
+    try:
+        run = simulate(m, sample_rate_hz=10.0, seconds=1.0, substeps=1, start={"two": 0.1})
+    except ParameterError as error:
+        assert error.where == "k" and "too long for this spring" in error.kind
+    else:
+        assert all(np.isfinite(q).all() for q in run.position.values())
 
 
 def test_a_motion_without_bounds_ends_with_its_instant():

@@ -59,7 +59,7 @@ def simulate(
     Notes
     -----
     Second order in the step through stick, slip and reversal of frictions on a body's own coordinate; of frictions
-    between bodies, measured orders are 1.9 to 2.0 (``tests/test_mechanism_order.py``). A relative speed of friction
+    between bodies, observed orders are 1.97 to 2.06 (``tests/test_mechanism_order.py``). A relative speed of friction
     that holds is exactly 0.
 
     Examples

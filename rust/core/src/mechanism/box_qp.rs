@@ -157,8 +157,8 @@ impl BoxQp {
         outcome
     }
 
-    /// Changes the active set until it stays, or for as long as it never took on random networks of 9 frictions (10 in
-    /// 399 of 400 that did not cycle).
+    /// Changes the active set until it stays, or for longer than it takes where it does not cycle: on random networks of
+    /// 9 frictions 4 sets in the median, 7 in 95 of 100, and 7 of 4000 cycled.
     fn settle(&mut self, outcome: &mut Outcome) {
         for _ in 0..2 * self.rows + 10 {
             outcome.sets += 1;

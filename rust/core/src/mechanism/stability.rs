@@ -1,11 +1,15 @@
 //! The longest step that the springs of a mechanism allow, and which of them asks for it.
 
 use nalgebra::DMatrix;
+use nalgebra::linalg::Schur;
 
 use crate::Error;
 
 use super::forces::{Pair, Plan};
 use super::network::Network;
+
+// An eigenvalue takes two or three.
+const MOST_ITERATIONS: usize = 10_000;
 
 /// The limit of the explicit midpoint step: `h w < 2` for the highest circular frequency w.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,12 +53,14 @@ pub fn longest_step(network: &Network) -> LongestStep {
             }
         }
     }
-    let largest = matrix
-        .complex_eigenvalues()
-        .iter()
-        .map(|value| value.norm())
-        .fold(0.0, f64::max);
-    if largest.is_nan() || largest <= 0.0 {
+    let largest = largest_eigenvalue(&matrix);
+    if largest.is_infinite() {
+        return LongestStep {
+            seconds: 0.0,
+            element: all.first().map(|(_, _, _, element)| *element),
+        };
+    }
+    if largest <= 0.0 {
         return LongestStep {
             seconds: f64::INFINITY,
             element: None,
@@ -84,6 +90,23 @@ pub fn longest_step(network: &Network) -> LongestStep {
         seconds: 2.0 / largest.sqrt(),
         element,
     }
+}
+
+/// The largest eigenvalue by size; infinite where numbers overflow.
+fn largest_eigenvalue(matrix: &DMatrix<f64>) -> f64 {
+    let size = matrix.norm();
+    if !size.is_finite() {
+        return f64::INFINITY;
+    }
+    if size == 0.0 {
+        return 0.0;
+    }
+    // Scaled, so that no product overflows. The norm is a bound where the iteration does not end.
+    let schur = Schur::try_new(matrix / size, f64::EPSILON, MOST_ITERATIONS);
+    let values = schur.map(|schur| schur.complex_eigenvalues());
+    values.map_or(size, |values| {
+        size * values.iter().map(|v| v.norm()).fold(0.0, f64::max)
+    })
 }
 
 /// The steepest slope of a sum of luz terms.
