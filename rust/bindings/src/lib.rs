@@ -8,6 +8,7 @@ mod dynamics;
 mod effects;
 mod error;
 mod mechanism;
+mod oracle;
 mod projections;
 mod regression;
 mod signal;
@@ -31,6 +32,8 @@ mod _core {
     use crate::effects::effect_cards;
     #[pymodule_export]
     use crate::mechanism::{Mechanism, MechanismStepper, hold_or_slide};
+    #[pymodule_export]
+    use crate::oracle::{sampled_cubics, solve_bodies_exactly, solve_steering_exactly};
     #[pymodule_export]
     use crate::projections::project;
     #[pymodule_export]
