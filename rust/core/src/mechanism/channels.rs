@@ -1,7 +1,7 @@
 //! What drives a mechanism: angles of driven nodes and loads on bodies, sampled, refined to the sub-steps.
 
 use crate::Error;
-use crate::dynamics::refine;
+use crate::dynamics::{MOST_STEPS, Refinement};
 use crate::error::require_positive;
 
 use super::network::Network;
@@ -65,11 +65,15 @@ impl Channels {
         substeps: usize,
     ) -> Result<Self, Error> {
         require_positive("sample_rate_hz", sample_rate_hz)?;
-        if substeps == 0 {
+        let refinement = Refinement::new(substeps)?;
+        if samples.saturating_mul(substeps) > MOST_STEPS {
             return Err(Error::OutOfRange {
                 name: "substeps",
-                value: 0.0,
-                interval: "[1, inf)".to_owned(),
+                value: substeps as f64,
+                interval: format!(
+                    "[1, {}] for a record of {samples} samples",
+                    (MOST_STEPS / samples.max(1)).max(1)
+                ),
             });
         }
         let length = |expected: String, got| {
@@ -93,7 +97,7 @@ impl Channels {
             require_finite(name, row)?;
         }
         Ok(Self {
-            rows: rows.iter().map(|row| refine(row, 2 * substeps)).collect(),
+            rows: rows.iter().map(|row| refinement.refine(row)).collect(),
             samples,
             substeps,
             step_s: 1.0 / (sample_rate_hz * substeps as f64),
