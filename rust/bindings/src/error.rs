@@ -23,7 +23,8 @@ impl From<CoreError> for PyErr {
 /// What is wrong, where, and what to do: the three parts every error of the Python side has.
 fn parts(error: luztar::Error) -> (String, String, String) {
     use luztar::Error::{
-        Length, NonFinite, OutOfRange, Singular, TooMany, Unknown, Unlike, Unrepresentable,
+        Length, Mechanism, NonFinite, OutOfRange, Singular, TooMany, Unknown, Unlike,
+        Unrepresentable,
     };
     match error {
         NonFinite { name, index, value } => (
@@ -54,6 +55,11 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             what.to_owned(),
             format!("Known are: {known}."),
         ),
+        Mechanism {
+            place,
+            problem,
+            remedy,
+        } => (problem, place, remedy),
         Unlike { what } => (
             format!("{what} cannot be merged"),
             "merge".to_owned(),
