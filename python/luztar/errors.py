@@ -39,6 +39,10 @@ class MeasurementError(LuztarError, ValueError):
     """A file or table that cannot be read as a measurement."""
 
 
+class DoubtfulError(MeasurementError):
+    """A measurement that can be read and compared, but from which nothing may be concluded."""
+
+
 class ModelError(LuztarError, ValueError):
     """A model or model file that makes no sense."""
 

@@ -35,9 +35,9 @@ class Flag:
     Attributes
     ----------
     kind : str
-        ``at_bound``, ``no_influence`` or ``not_passive``.
+        ``at_bound``, ``no_influence``, ``not_passive`` or ``clipped``.
     parameter : str
-        ``effect.parameter``; of ``not_passive`` the one that does most of it.
+        ``effect.parameter``; of ``not_passive`` the one that does most of it, of ``clipped`` empty.
     text : str
     """
 
@@ -60,7 +60,13 @@ def flags_of(fitted: Fit) -> tuple[Flag, ...]:
     silent = tuple(_without_influence(fitted))
     mute = {f.parameter.partition(".")[0] for f in silent if "contributes" in f.text}
     bounds = (f for f in _at_bounds(fitted) if f.parameter.partition(".")[0] not in mute)
-    return (*bounds, *silent, *_not_passive(fitted))
+    return (*bounds, *silent, *_not_passive(fitted), *_clipped(fitted))
+
+
+def _clipped(fitted: Fit) -> Iterator[Flag]:
+    for r in fitted.runs:
+        if r.doubt:
+            yield Flag("clipped", "", f"{r.name}: {r.doubt}. The values rest on that.")
 
 
 def _at_bounds(fitted: Fit) -> Iterator[Flag]:

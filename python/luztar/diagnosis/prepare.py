@@ -77,6 +77,8 @@ class Prepared:
     duration_s : float
     has_load : bool
         Whether the load was recorded.
+    doubt : str
+        What stands against naming an effect from this run; empty where nothing does.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Prepared:
     step_s: float
     duration_s: float
     has_load: bool
+    doubt: str = ""
 
 
 def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:

@@ -171,6 +171,4 @@ def _rebuilt(
 
 
 def _touches(finding: Finding, first: float, last: float) -> bool:
-    if finding.from_s is None or finding.to_s is None:
-        return True
-    return finding.from_s <= last and finding.to_s >= first
+    return finding.concerns(first, last)
