@@ -23,7 +23,9 @@ class LuztarError(Exception):
         super().__init__(kind, where, remedy)
 
     def __str__(self) -> str:
-        text = f"{self.where}: {self.kind}" if self.where else self.kind
+        # "x: x is 3" would say it twice.
+        named = not self.where or f"{self.kind} ".startswith(f"{self.where} ")
+        text = self.kind if named else f"{self.where}: {self.kind}"
         return f"{text}. {self.remedy}" if self.remedy else text
 
     def to_dict(self) -> dict[str, str]:

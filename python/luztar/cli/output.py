@@ -30,7 +30,8 @@ def tell(text: str) -> None:
 
 def say_error(kind: str, where: str, remedy: str) -> None:
     """Print an error for a reader: the place and what is wrong, then what to do."""
-    tell(f"error: {f'{where}: ' if where else ''}{kind.rstrip('.')}.")
+    named = not where or kind.startswith(f"{where} ")
+    tell(f"error: {'' if named else f'{where}: '}{kind.rstrip('.')}.")
     if remedy:
         tell(f"  {remedy}")
 
