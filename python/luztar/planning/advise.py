@@ -108,7 +108,7 @@ class Advice:
         names = " and ".join(card(n, structure).title for n in self.rivals)
         mine = card(self.effect, structure).title
         if self.decides:
-            unit = "minute" if self.best.minutes < 1.25 else "minutes"
+            unit = "minute" if _short(self.best.minutes) == "1.0" else "minutes"
             return (
                 f"{self.best.trial.text}. That tells {mine} from {names}: three runs of {_short(self.best.minutes)} "
                 f"{unit} set them {_standard_errors(self.apart)} apart, the strokes recorded so far {_short(self.now)}."
