@@ -35,7 +35,8 @@ class Flag:
     Attributes
     ----------
     kind : str
-        ``at_bound``, ``no_influence``, ``not_passive``, ``one_direction`` or ``clipped``.
+        ``at_bound``, ``no_influence``, ``not_passive``, ``one_direction``, ``clipped``, ``own_offset`` or
+        ``own_delay``.
     parameter : str
         ``effect.parameter``; of ``not_passive`` the one that does most of it, of ``clipped`` empty.
     text : str
@@ -64,7 +65,7 @@ def flags_of(fitted: Fit) -> tuple[Flag, ...]:
     if one_way:
         # The level and the offset are any two numbers with the right sum: what they are says nothing further.
         bounds = (f for f in bounds if f.parameter != one_way[0].parameter)
-    return (*one_way, *bounds, *silent, *(() if one_way else _not_passive(fitted)), *_clipped(fitted))
+    return (*one_way, *bounds, *silent, *(() if one_way else _not_passive(fitted)), *_of_runs(fitted))
 
 
 def _one_way(fitted: Fit) -> Iterator[Flag]:
@@ -80,10 +81,29 @@ def _one_way(fitted: Fit) -> Iterator[Flag]:
         yield Flag("one_direction", level, text)
 
 
-def _clipped(fitted: Fit) -> Iterator[Flag]:
+def _of_runs(fitted: Fit) -> Iterator[Flag]:
     for r in fitted.runs:
         if r.doubt:
             yield Flag("clipped", "", f"{r.name}: {r.doubt}. The values rest on that.")
+    yield from _own_sensors(fitted)
+
+
+def _own_sensors(fitted: Fit) -> Iterator[Flag]:
+    unit = fitted.model.structure.effort_unit
+    key = f"offset.level_{'nm' if fitted.model.structure.motion_unit == 'rad' else 'n'}"
+    for r in fitted.runs:
+        if r.own_offset:
+            way = "above" if r.own_offset > 0.0 else "below"
+            size = f"{abs(r.own_offset):.3g} {unit}"
+            text = f"{r.name} lies {size} {way} the other runs everywhere; taken off. Was the load cell zeroed anew?"
+            yield Flag("own_offset", key, text)
+        if r.own_delay_s:
+            way = "later" if r.own_delay_s > 0.0 else "earlier"
+            size = f"{1e3 * abs(r.own_delay_s):.3g} ms"
+            text = (
+                f"{r.name}: its {fitted.model.structure.effort} comes {size} {way} than in the other runs; taken off."
+            )
+            yield Flag("own_delay", "delay.time_s", text)
 
 
 def _at_bounds(fitted: Fit) -> Iterator[Flag]:
