@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, Self, TypedDict, final, type_check_only
 
 import numpy as np
@@ -23,6 +23,7 @@ __all__ = [
     "RollingPolynomial",
     "ZeroPhase",
     "__version__",
+    "check_lanes",
     "effect_cards",
     "even",
     "extremes",
@@ -32,16 +33,20 @@ __all__ = [
     "held_out",
     "huber",
     "instruction_sets",
+    "lane_columns",
     "moments_by_label",
     "moments_by_window",
     "normal_equations",
     "project",
     "rolling",
+    "run_lanes",
+    "sampled_cubics",
     "simulate_steering",
     "solve_block",
+    "solve_bodies_exactly",
+    "solve_steering_exactly",
+    "steering_highest_rad_s",
     "steering_parameters",
-    "steering_summary_names",
-    "summarise_steering",
     "theil_sen",
     "trace_steering",
 ]
@@ -435,6 +440,9 @@ def held_out(
 # dynamics
 
 def steering_parameters() -> list[str]: ...
+def steering_highest_rad_s(
+    parameters: NDArray[np.float64], wound_rad: float, first: int = 0
+) -> NDArray[np.float64]: ...
 def simulate_steering(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
@@ -448,8 +456,21 @@ def simulate_steering(
     phi: NDArray[np.float64],
     speed: NDArray[np.float64] | None,
 ) -> None: ...
-def steering_summary_names() -> list[str]: ...
-def summarise_steering(
+def lane_columns(
+    samples: int, events: bool, energy: bool, window: int, chosen: Sequence[int]
+) -> list[tuple[str, int]]: ...
+def check_lanes(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+    first: int,
+) -> None: ...
+def run_lanes(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
     handwheel_rad: NDArray[np.float64],
@@ -459,7 +480,15 @@ def summarise_steering(
     substeps: int,
     method: str,
     width: str,
-    out: NDArray[np.float64],
+    events: bool,
+    energy: bool,
+    window: int,
+    chosen: Sequence[int],
+    rows: NDArray[np.float64],
+    done: NDArray[np.bool_],
+    phi: NDArray[np.float64] | None,
+    speed: NDArray[np.float64] | None,
+    told: Callable[[int], object] | None,
 ) -> None: ...
 def trace_steering(
     parameters: NDArray[np.float64],
@@ -470,7 +499,39 @@ def trace_steering(
     sample_rate_hz: float,
     substeps: int,
     method: str,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[float, str, float]], list[tuple[str, float]]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    list[tuple[float, str, float]],
+    list[tuple[str, float]],
+]: ...
+
+_Signal = tuple[_Floats, _Floats, _Floats]
+_Exact = tuple[_Floats, _Floats, list[tuple[float, str, int, int, float]]]
+
+def sampled_cubics(values: NDArray[np.float64], sample_rate_hz: float) -> NDArray[np.float64]: ...
+def solve_steering_exactly(
+    parameters: NDArray[np.float64],
+    start: tuple[float, float],
+    handwheel: _Signal,
+    load: _Signal,
+    *,
+    ground_speed: float,
+    times_s: NDArray[np.float64],
+    most_events: int,
+) -> _Exact: ...
+def solve_bodies_exactly(
+    bodies: NDArray[np.float64],
+    loads: Sequence[_Signal],
+    stiffness: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    springs: Sequence[tuple[float, float, NDArray[np.float64], _Signal]],
+    starts: Sequence[tuple[float, float]],
+    *,
+    times_s: NDArray[np.float64],
+    most_events: int,
+) -> _Exact: ...
 
 # projections
 
