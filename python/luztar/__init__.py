@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from . import dynamics as dynamics
     from . import effects as effects
     from . import measurement as measurement
+    from . import mechanism as mechanism
     from . import model as model
     from . import projections as projections
     from . import regression as regression
@@ -43,6 +44,7 @@ _LAZY: dict[str, str] = {
     "effects": "effects",
     "fit": "diagnosis:fit",
     "measurement": "measurement",
+    "mechanism": "mechanism",
     "model": "model",
     "plan": "planning:plan",
     "projections": "projections",

@@ -79,6 +79,8 @@ class Prepared:
         Whether the load was recorded.
     channel : str
         The channel of ``effort`` where a structure explains several; else empty.
+    doubt : str
+        What stands against naming an effect from this run; empty where nothing does.
     own_offset, own_delay_s : float
         What the sensor of this run alone had, taken off the effort already.
     """
@@ -98,6 +100,7 @@ class Prepared:
     duration_s: float
     has_load: bool
     channel: str = ""
+    doubt: str = ""
     own_offset: float = 0.0
     own_delay_s: float = 0.0
 
