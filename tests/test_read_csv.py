@@ -230,7 +230,7 @@ def test_map_and_unit_refuse_unknown_keys(tmp_path):
     with pytest.raises(MeasurementError, match="Did you mean torque"):
         luztar.read(path, map={"torqe": "ADC6"})
     with pytest.raises(MeasurementError, match="unknown key"):
-        luztar.read(path, units={"speed": "m/s"})
+        luztar.read(path, units={"pace": "m/s"})
     with pytest.raises(MeasurementError, match="Did you mean 'ADC6'"):
         luztar.read(path, map={"torque": "ADC66"})
     with pytest.raises(MeasurementError, match="measures force"):
