@@ -42,6 +42,7 @@ MAY_IMPORT = {
     "dynamics": FOUNDATION,
     "projections": FOUNDATION,
     "vehicle": FOUNDATION | {"dynamics"},
+    "manoeuvre": FOUNDATION | {"dynamics", "vehicle"},
     "diagnosis": FOUNDATION | {"measurement", "model"},
     "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model"},
     "planning": FOUNDATION | {"diagnosis", "measurement", "model"},
@@ -54,6 +55,7 @@ NEVER = {
     "diagnosis": {"cli", "app"},
     "freerun": {"cli", "app", "report", "tb038"},
     "planning": {"cli", "app", "tb038"},
+    "manoeuvre": {"cli", "app", "diagnosis", "tb038"},
     "report": {"cli", "app"},
 }
 
