@@ -5,8 +5,16 @@ A :class:`Manoeuvre` is a car, a track, a speed, a form of signal and the paper'
 
 from .criterion import Scores as Scores
 from .form import Form as Form
+from .map import SignalMap as SignalMap
+from .map import map as map
 from .optimise import Optimum as Optimum
 from .optimise import optimise as optimise
+from .robust import Robustness as Robustness
+from .robust import robust as robust
+from .sensitivity import Sensitivity as Sensitivity
+from .sensitivity import sensitivity as sensitivity
+from .study_file import Study as Study
+from .study_file import load as load
 from .task import Manoeuvre as Manoeuvre
 from .task import manoeuvre as manoeuvre
 from .track import Track as Track

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from .._arrays import number
 from ..errors import ParameterError
 from ..vehicle import Car, Drive, Pieces, Samples, simulate, summarise
@@ -116,7 +118,7 @@ class Manoeuvre:
         """Return the signals of parameter rows; see :meth:`Form.pieces`."""
         return self.form.pieces(values, self.direction)
 
-    def scores(self, values: Any, vary: Mapping[str, Any] | None = None) -> Scores:
+    def scores(self, values: Any, vary: Mapping[str, Any] | None = None, *, speed_m_s: Any = None) -> Scores:
         """Return the criterion of signals given by their parameters.
 
         Parameters
@@ -125,19 +127,26 @@ class Manoeuvre:
             In the order of ``form.names``.
         vary : mapping of str to float or array_like, shape (cars,)
             Parameters of the car that differ.
+        speed_m_s : array_like, shape (cars,), optional
+            Speeds that differ from the task's, whose weights they keep.
 
         Raises
         ------
         ParameterError
             As :meth:`Form.pieces` and :func:`luztar.vehicle.summarise`.
         """
-        return self.scores_of(self.signals(values), vary)
+        return self.scores_of(self.signals(values), vary, speed_m_s=speed_m_s)
 
-    def scores_of(self, signal: Pieces | Samples, vary: Mapping[str, Any] | None = None) -> Scores:
+    def scores_of(
+        self, signal: Pieces | Samples, vary: Mapping[str, Any] | None = None, *, speed_m_s: Any = None
+    ) -> Scores:
         """Return the criterion of any signal, a measured trace among them."""
         weights = self.weights
         assert weights is not None  # set above
-        kept = summarise(corridor=self.track.corridor(), vary=vary, **self._run(signal))
+        run = self._run(signal)
+        if speed_m_s is not None:
+            run |= {"speed_m_s": speed_m_s, "duration_s": self.track.exit_m[1] / np.asarray(speed_m_s)}
+        kept = summarise(corridor=self.track.corridor(), vary=vary, **run)
         return score(kept, weights, limit_m_s2=self.limit_m_s2, exit_m=self.track.exit_m[0])
 
     def drive(self, values: Any, vary: Mapping[str, Any] | None = None, *, every: int = 2) -> Drive:
