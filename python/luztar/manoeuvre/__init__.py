@@ -15,6 +15,8 @@ from .sensitivity import Sensitivity as Sensitivity
 from .sensitivity import sensitivity as sensitivity
 from .study_file import Study as Study
 from .study_file import load as load
+from .synthesis import Synthesis as Synthesis
+from .synthesis import synthesise as synthesise
 from .task import Manoeuvre as Manoeuvre
 from .task import manoeuvre as manoeuvre
 from .track import Track as Track

@@ -172,8 +172,8 @@ class Robustness(Printed):
         cars = self.fine_criterion[0].size
         rows.append(("most robust", f"the signal for z0 = {z:g} rad, {f:g} Nm (of {cars} cars on the finer grid)"))
         for name, value in self.spread().items():
-            text = "from finite to infinite" if value is None else f"{100 * value:.2f} %"
-            rows.append((f"J_w over {name}", text))
+            text = "more than can be said (infinite)" if value is None else f"{100 * value:.2f} %"
+            rows.append((f"over {name}", f"J_w of the optima grows by {text}"))
         return rows
 
 

@@ -87,6 +87,7 @@ class _Memory:
         self.points: list[np.ndarray] = []
         self.values: list[np.ndarray] = []
         self.count = 0
+        self.least = float("inf")
         self.stage = ""
         self.history: list[Step] = []
 
@@ -95,10 +96,11 @@ class _Memory:
         self.points.append(points.copy())
         self.values.append(values)
         self.count += len(points)
+        self.least = min(self.least, float(values.min()))
         return values
 
-    def tell(self, best: float) -> None:
-        step = Step(self.stage, self.count, best)
+    def tell(self, _best_of_stage: float) -> None:
+        step = Step(self.stage, self.count, self.least)
         self.history.append(step)
         self.told(step)
 

@@ -52,11 +52,16 @@ class Sensitivity(Printed):
     on_feasibility : Indices or None
         Of 0 (outside the limits) and 1 (within), by Saltelli's design over all drives. None where all are alike.
     on_criterion : Indices or None
-        Of J_w given that it is finite: first order by bins, on the feasible rows of A and B. None with fewer than 64.
-        The parameters are then no longer quite independent: shares of the variance within the feasible set.
+        Of ln J_w given that it is finite: first order by bins, on the feasible rows of A and B. None with fewer than
+        64. The parameters are then no longer quite independent: shares of the variance within the feasible set.
     on_rank : Indices or None
         Of the rank among all drives, by Saltelli's design: feasible ones by J_w, after them the others by how far they
         break the limits (the companion). Ranks exist where J_w is infinite.
+
+    Notes
+    -----
+    J_w has no variance to share out, even where it is finite: towards the edge it grows as 1/c^2 while the clearance c
+    has a density there, so that J_w > j with a probability like ``j**-0.5``. Its logarithm has all moments.
     """
 
     task: Manoeuvre
@@ -112,7 +117,7 @@ class Sensitivity(Printed):
         )
         titles = {
             "feasibility": ("whether the limits hold", self.on_feasibility),
-            "criterion": ("J_w where it is finite", self.on_criterion),
+            "criterion": ("ln J_w where it is finite", self.on_criterion),
             "rank": ("rank among all drives", self.on_rank),
         }
         for _, (title, found) in titles.items():
@@ -212,7 +217,7 @@ def sensitivity(
         drives=criterion.size,
         feasible=int(feasible.sum()),
         on_feasibility=saltelli(names, feasible.astype(np.float64), seed),
-        on_criterion=by_bins(names, points[:, :2][plain], criterion[:, :2][plain], seed),
+        on_criterion=by_bins(names, points[:, :2][plain], np.log(criterion[:, :2][plain]), seed),
         on_rank=saltelli(names, _ranks(feasible, criterion, companion), seed),
         seed=seed,
     )

@@ -238,7 +238,7 @@ def manoeuvre(
     >>> import luztar
     >>> task = luztar.manoeuvre.manoeuvre("avoiding", length_m=90.0, speed_m_s=20.0)
     >>> task.track.length_m, round(task.duration_s, 2)
-    (90.0, 7.75)
+    (90.0, 8.5)
     """
     chosen = Car.named(car) if isinstance(car, str) else car
     if not isinstance(chosen, Car):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..manoeuvre.clearance import along, outline
+from ..manoeuvre.synthesis import played
 from .style import AFTER, BEFORE, DECOY, FLOOR, INK, QUIET, RUNS, dressed, numbers, panels, plain, plotly
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 CARS_DRAWN = 12
 # Beyond this kappa a clearance is below 5 cm: the picture need not follow it to infinity.
 LARGEST_KAPPA = 20.0
+# J_w near an edge grows without bound: shades end so many decades above the least.
+DECADES = 1.0
 SCALE = [[0.0, "#FFFFFF"], [0.5, "#9ECAE1"], [1.0, "#08519C"]]
 
 
@@ -35,7 +38,7 @@ def drives(optimum: Optimum) -> Any:
         rows=4,
         cols=1,
         row_heights=[0.4, 0.2, 0.2, 0.2],
-        vertical_spacing=0.085,
+        vertical_spacing=0.105,
         subplot_titles=[
             "Path of the reference point, the car, the corridor",
             "Handwheel" if task.steer == "angle" else "Steering torque",
@@ -50,7 +53,9 @@ def drives(optimum: Optimum) -> Any:
         if name == "optimal":
             _bodies(picture, task, drive, colour)
         kappa = np.minimum(1.0 / np.maximum(along(drive, task.track, task.car), 1.0 / LARGEST_KAPPA), LARGEST_KAPPA)
-        hand = drive.handwheel_rad if task.steer == "angle" else _played(task, values, drive.time_s)
+        hand = (
+            drive.handwheel_rad if task.steer == "angle" else task.direction * played(task.form, values, drive.time_s)
+        )
         rows = [
             (drive.x_m, drive.y_m),
             (drive.time_s, hand),
@@ -76,7 +81,8 @@ def drives(optimum: Optimum) -> Any:
     ):
         picture.update_xaxes(title_text=x, row=row, col=1)
         picture.update_yaxes(title_text=y, row=row, col=1)
-    return dressed(picture, height=860, legend=True)
+    picture.update_xaxes(range=[task.track.entry_m[0], task.track.exit_m[1] + 4.0], row=1, col=1)
+    return dressed(picture, height=900, legend=True)
 
 
 def _corridor(picture: Any, task: Manoeuvre) -> None:
@@ -113,14 +119,6 @@ def _bodies(picture: Any, task: Manoeuvre, drive: Any, colour: str) -> None:
         row=1,
         col=1,
     )
-
-
-def _played(task: Manoeuvre, values: np.ndarray, time_s: np.ndarray) -> np.ndarray:
-    pieces = task.signals(values)
-    at = np.searchsorted(pieces.start_s, time_s, side="right") - 1
-    inside = at >= 0
-    angle = 2.0 * np.pi * pieces.frequency_hz[at] * (time_s - pieces.start_s[at])
-    return np.where(inside, pieces.amplitude[at] * np.sin(angle), 0.0)
 
 
 def history(optimum: Optimum) -> Any:
@@ -194,13 +192,17 @@ def fine(result: Robustness, signal: int) -> Any:
     """
     picture = plotly().Figure()
     values = result.fine_criterion[signal]
+    shown = np.where(np.isfinite(values), values, np.nan)
     picture.add_heatmap(
         x=numbers(result.fine_freeplay_rad),
         y=numbers(result.fine_friction_nm),
-        z=[numbers(row) for row in values.T],
+        z=[numbers(row) for row in np.log10(shown).T],
+        zmax=float(np.log10(shown[np.isfinite(shown)].min())) + DECADES if np.isfinite(shown).any() else None,
+        zmin=float(np.log10(shown[np.isfinite(shown)].min())) if np.isfinite(shown).any() else None,
+        customdata=[numbers(row) for row in shown.T],
         colorscale=SCALE,
-        colorbar={"title": {"text": "J_w"}, "thickness": 14},
-        hovertemplate="z0 %{x} rad, %{y} Nm: %{z}<extra></extra>",
+        colorbar={"title": {"text": "log10 J_w"}, "thickness": 14},
+        hovertemplate="z0 %{x} rad, %{y} Nm: %{customdata}<extra></extra>",
     )
     out = np.argwhere(~np.isfinite(values))
     picture.add_scatter(
@@ -293,7 +295,7 @@ def indices(result: Sensitivity) -> Any:
     """
     parts: list[tuple[str, Indices | None]] = [
         ("whether the limits hold", result.on_feasibility),
-        ("J_w where finite", result.on_criterion),
+        ("ln J_w where finite", result.on_criterion),
         ("rank among all drives", result.on_rank),
     ]
     picture = panels(

@@ -106,8 +106,8 @@ def write_sensitivity(path: str | os.PathLike[str], result: Sensitivity) -> None
         (
             "indices",
             "What decides",
-            "Shares of the variance of three outputs, with 95 % intervals. J_w is infinite outside the limits and has "
-            "no indices there; its rank has.",
+            "Shares of the variance of three outputs, with 95 % intervals. J_w is infinite outside the limits: "
+            "its rank among all drives has indices, and its logarithm within the limits.",
             lambda: manoeuvre_figures.indices(result),
         )
     ]
