@@ -10,7 +10,13 @@ from .car import Car as Car
 from .car import Parameter as Parameter
 from .corridor import Corridor as Corridor
 from .drive import Drive as Drive
+from .frequency_response import FrequencyResponse as FrequencyResponse
+from .frequency_response import frequency_response as frequency_response
 from .run_cars import simulate as simulate
 from .run_cars import summarise as summarise
 from .signals import Pieces as Pieces
 from .signals import Samples as Samples
+from .step_steer import StepSteer as StepSteer
+from .step_steer import step_steer as step_steer
+from .weave import Weave as Weave
+from .weave import weave as weave

@@ -201,7 +201,8 @@ def _read(text: str, where: str) -> Car:
             raise ModelError(f"'{section}' is no section", where, "Only schema, name, title, tyre stand at the top.")
         for name, entry in entries.items():
             key = f"{section}.{name}"
-            if not isinstance(entry, dict) or set(entry) != {"value", "source"} or not entry["source"]:
+            complete = isinstance(entry, dict) and set(entry) == {"value", "source"} and entry["source"]
+            if not complete or isinstance(entry["value"], bool):
                 remedy = f'Write {name} = {{ value = ..., source = "..." }}.'
                 raise ModelError(f"{key} has no value with a source", where, remedy)
             try:

@@ -25,6 +25,10 @@ class Drive:
         Of the point below the centre of mass.
     roll_rad, roll_rate_rad_s : ndarray
         To the right positive: outward in a turn to the left.
+    heave_m, pitch_rad : ndarray
+        Of the body, up and nose down; 0 where the model has none.
+    load_front_left_n, load_front_right_n, load_rear_left_n, load_rear_right_n : ndarray
+        What the wheels carry.
     """
 
     time_s: np.ndarray
@@ -42,6 +46,12 @@ class Drive:
     y_m: np.ndarray
     roll_rad: np.ndarray
     roll_rate_rad_s: np.ndarray
+    heave_m: np.ndarray
+    pitch_rad: np.ndarray
+    load_front_left_n: np.ndarray
+    load_front_right_n: np.ndarray
+    load_rear_left_n: np.ndarray
+    load_rear_right_n: np.ndarray
 
     def to_dict(self) -> dict[str, Any]:
         """Return the drive as plain JSON values."""

@@ -16,7 +16,7 @@ from .car import CAR_COLUMNS, CHANNELS, START_COLUMNS, SUMMARY_COLUMNS, Car, che
 from .corridor import Corridor
 from .signals import Pieces, Samples, signal
 
-MODELS = ("single_track", "lateral_roll")
+MODELS = ("single_track", "lateral_roll", "twelve")
 STEERS = ("angle", "torque")
 
 
@@ -118,6 +118,9 @@ def fleet(
     starts = np.zeros((lanes, len(START_COLUMNS)))
     for key, value in begins.items():
         starts[:, START_COLUMNS.index(key)] = value
+    step = number("step_s", step_s)
+    if not (math.isfinite(step) and step > 0.0):
+        raise ParameterError(f"step_s is {step}", "step_s", "Give a positive number of seconds.")
     return Fleet(
         cars=rows,
         many=bool(sizes),
@@ -128,7 +131,7 @@ def fleet(
         steer="torque" if handwheel_rad is None else "angle",
         model=model,
         tyre=tyre or car.tyre,
-        step_s=number("step_s", step_s),
+        step_s=step,
         corridor=corridor,
         width=width,
     )

@@ -48,7 +48,7 @@ def simulate(
         Too long a step is refused with the part of the car that does not allow it.
     every : int
         Steps from one sample of the trace to the next.
-    model : {"single_track", "lateral_roll"}
+    model : {"single_track", "lateral_roll", "twelve"}
     tyre : {"linear", "brush", "magic_formula"}, optional
         The car's own where not given.
     vary : mapping of str to float or array_like, shape (cars,)
@@ -152,7 +152,7 @@ def summarise(
     >>> lane = luztar.vehicle.Corridor(from_m=0.0, to_m=[30.0], right_m=-1.5, left_m=1.5)
     >>> kept = luztar.vehicle.summarise(car, handwheel_rad=hand, speed_m_s=[15.0, 20.0], duration_s=5.0, corridor=lane)
     >>> kept["clearance_min_m"].round(3).tolist()
-    [0.0, 0.0]
+    [-0.33, 0.521]
     """
     made = fleet(
         car,

@@ -127,7 +127,8 @@ fn model(name: &str) -> PyResult<Model> {
     match name {
         "single_track" => Ok(Model::SingleTrack),
         "lateral_roll" => Ok(Model::LateralRoll),
-        _ => Err(unknown("model", name, "single_track, lateral_roll")),
+        "twelve" => Ok(Model::Twelve),
+        _ => Err(unknown("model", name, "single_track, lateral_roll, twelve")),
     }
 }
 

@@ -28,6 +28,7 @@ mod summary;
 mod table;
 mod trace;
 mod turn;
+mod twelve;
 mod tyre;
 
 pub use corridor::{Corridor, SECTION};

@@ -41,25 +41,28 @@ fn signed(value: f64, whole: f64) -> Pure {
     Pure(f64::from_bits(value.to_bits() ^ sign))
 }
 
-/// Taylor's series of the sine for `|r| <= pi/2`, where the term of order 23 is below 2e-18.
+// (sin(r)/r - 1)/r^2 by Taylor's series for |r| <= pi/2, where the term of order 23 is below 2e-18.
+const SIN: [f64; 10] = [
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 355_687_428_096_000.0,
+    -1.0 / 121_645_100_408_832_000.0,
+    1.0 / 51_090_942_171_709_440_000.0,
+];
+
 #[inline(always)]
 fn taylor(r: f64) -> f64 {
     let z = r * r;
-    let mut sum = 1.0 / 51_090_942_171_709_440_000.0;
-    for term in [
-        -1.0 / 121_645_100_408_832_000.0,
-        1.0 / 355_687_428_096_000.0,
-        -1.0 / 1_307_674_368_000.0,
-        1.0 / 6_227_020_800.0,
-        -1.0 / 39_916_800.0,
-        1.0 / 362_880.0,
-        -1.0 / 5_040.0,
-        1.0 / 120.0,
-        -1.0 / 6.0,
-    ] {
-        sum = sum * z + term;
-    }
-    r + r * z * sum
+    let w = z * z;
+    let even = SIN[0] + w * (SIN[2] + w * (SIN[4] + w * (SIN[6] + w * SIN[8])));
+    let odd = SIN[1] + w * (SIN[3] + w * (SIN[5] + w * (SIN[7] + w * SIN[9])));
+    // Even and odd terms are two chains that do not wait for each other.
+    r + r * z * (even + z * odd)
 }
 
 // tan(pi/8) and tan(3 pi/8): between them the angle is measured from pi/4.
@@ -67,17 +70,17 @@ const TAN_EIGHTH: f64 = 0.414_213_562_373_095_03;
 const TAN_THREE_EIGHTHS: f64 = 2.414_213_562_373_095;
 // (atan(x)/x - 1)/x^2 over x^2 in [0, tan(pi/8)^2], Chebyshev's fit of degree 10: within 4e-17.
 const ATAN: [f64; 11] = [
-    -0.019_176_887_119_062_26,
-    0.039_231_658_295_587_19,
-    -0.050_854_497_379_402_6,
-    0.058_581_489_128_022_1,
-    -0.066_645_114_473_819_48,
-    0.076_921_831_908_260_87,
-    -0.090_909_045_781_239_03,
-    0.111_111_110_152_563_61,
-    -0.142_857_142_846_665_42,
-    0.199_999_999_999_955_2,
     -0.333_333_333_333_333_3,
+    0.199_999_999_999_955_2,
+    -0.142_857_142_846_665_42,
+    0.111_111_110_152_563_61,
+    -0.090_909_045_781_239_03,
+    0.076_921_831_908_260_87,
+    -0.066_645_114_473_819_48,
+    0.058_581_489_128_022_1,
+    -0.050_854_497_379_402_6,
+    0.039_231_658_295_587_19,
+    -0.019_176_887_119_062_26,
 ];
 
 /// Arc tangent: relative error below 1e-15.
@@ -95,11 +98,11 @@ pub(super) fn atan(x: Pure) -> Pure {
     );
     let t = above / below;
     let z = t * t;
-    let mut sum = Pure(ATAN[0]);
-    for term in &ATAN[1..] {
-        sum = sum * z + Pure(*term);
-    }
-    let angle = base + (t + t * z * sum);
+    let w = z * z;
+    let c = |i: usize| Pure(ATAN[i]);
+    let even = c(0) + w * (c(2) + w * (c(4) + w * (c(6) + w * (c(8) + w * c(10)))));
+    let odd = c(1) + w * (c(3) + w * (c(5) + w * (c(7) + w * c(9))));
+    let angle = base + (t + t * z * (even + z * odd));
     (-angle).when(x.0 < 0.0, angle)
 }
 

@@ -43,11 +43,28 @@ pub(super) fn across<T: Tyre>(force: Pure, steer: Pure) -> Pure {
     force * (Pure::ONE - z * (Pure(0.5) - z * Pure(1.0 / 24.0)))
 }
 
+/// The part of a wheel's lateral force that acts backward: sine of the steer angle, within 1e-7 below 0.2 rad.
+#[inline(always)]
+pub(super) fn along<T: Tyre>(force: Pure, steer: Pure) -> Pure {
+    if T::LINEAR {
+        return Pure::ZERO;
+    }
+    let z = steer * steer;
+    force * steer * (Pure::ONE - z * (Pure(1.0 / 6.0) - z * Pure(1.0 / 120.0)))
+}
+
+/// The share of its static load that a wheel carries where `shift` of it has come: not below 0, and not above 2, for
+/// the other wheel has no more to give.
+#[inline(always)]
+pub(super) fn carried(shift: Pure) -> Pure {
+    (Pure::ONE + shift).clamp(Pure::ZERO, Pure(2.0))
+}
+
 impl Axle {
     /// One wheel whose load is `load` times its static one. Stiffness over load is Pacejka's
     /// `K = Kmax sin(2 atan(Fz/Fz_peak)) = Kmax 2 u/(1 + u^2)`, friction `mu = mu0 (1 - c (Fz/Fz0 - 1))`.
     #[inline(always)]
-    fn wheel<T: Tyre>(&self, slip: Pure, load: Pure) -> Contact {
+    pub fn wheel<T: Tyre>(&self, slip: Pure, load: Pure) -> Contact {
         let half = Pure(0.5);
         let z = self.load_ratio * self.load_ratio;
         let stiffness =
@@ -73,10 +90,9 @@ impl Axle {
     /// Both wheels where `shift` of a wheel's static load has moved from the left to the right one.
     #[inline(always)]
     pub fn leaning<T: Tyre>(&self, slip: Pure, shift: Pure) -> Contact {
-        let load = |by: Pure| (Pure::ONE + by).clamp(Pure::ZERO, Pure(2.0));
         let (left, right) = (
-            self.wheel::<T>(slip, load(-shift)),
-            self.wheel::<T>(slip, load(shift)),
+            self.wheel::<T>(slip, carried(-shift)),
+            self.wheel::<T>(slip, carried(shift)),
         );
         Contact {
             force: left.force + right.force,

@@ -18,6 +18,7 @@ use super::single_track::SingleTrack;
 use super::step::{Arc, Input, State, step};
 use super::summary::{KEPT, Shown, Tally};
 use super::trace::CHANNELS;
+use super::twelve::Twelve;
 use super::tyre::{Brush, Linear, MagicFormula, Tyre};
 
 /// What a block works on.
@@ -62,6 +63,7 @@ impl WithSimd for Task<'_> {
         match self.0.fleet.model {
             Model::SingleTrack => self.on_tyres::<4, SingleTrack>(),
             Model::LateralRoll => self.on_tyres::<6, LateralRoll>(),
+            Model::Twelve => self.on_tyres::<20, Twelve>(),
         }
     }
 }
@@ -81,8 +83,8 @@ impl Task<'_> {
         match (self.0.fleet.steer, self.0.fleet.is_rich()) {
             (Steer::Angle, false) => self.along::<S, false, false, B, T>(),
             (Steer::Angle, true) => self.along::<S, true, false, B, T>(),
-            (Steer::Torque, false) => self.along::<S, false, true, B, T>(),
-            (Steer::Torque, true) => self.along::<S, true, true, B, T>(),
+            // What does not act adds exactly 0: leaving it out would only be quicker, and one more kernel to compile.
+            (Steer::Torque, _) => self.along::<S, true, true, B, T>(),
         }
     }
 
@@ -98,7 +100,7 @@ impl Task<'_> {
         } = self.0;
         // Lanes beyond the last repeat it, so that every block is full.
         let of: [usize; N] = std::array::from_fn(|lane| first + lane.min(lanes - 1));
-        let h = fleet.step_s;
+        let (h, inv_h) = (fleet.step_s, 1.0 / fleet.step_s);
         let mut table = [[0.0; N]; PREPARED];
         let mut now = Columns::<S>::new();
         let (mut front, mut rear, mut half_width, mut until) =
@@ -138,6 +140,11 @@ impl Task<'_> {
         let mut rate = [0.0; N];
         hand.values(0.0, slack, &mut hand0);
         speed.values(0.0, slack, &mut speed0);
+        let steady = fleet.speed.is_constant();
+        if steady {
+            (speed1, speed2) = (speed0, speed0);
+        }
+        let (mut inv0, mut inv1) = (speed0.map(|u| 1.0 / u), speed1.map(|u| 1.0 / u));
         let mut seen = Views::new();
         let mut next = now.clone();
         for number in 0..=steps {
@@ -148,8 +155,14 @@ impl Task<'_> {
                 hand.rates(middle, &mut rate);
             }
             hand.values(end, -slack, &mut hand2);
-            speed.values(middle, slack, &mut speed1);
-            speed.values(end, -slack, &mut speed2);
+            if !steady {
+                speed.values(middle, slack, &mut speed1);
+                speed.values(end, -slack, &mut speed2);
+                for lane in 0..N {
+                    inv0[lane] = 1.0 / speed0[lane];
+                    inv1[lane] = 1.0 / speed1[lane];
+                }
+            }
             for lane in 0..N {
                 let car = Prepared::gather(&table, lane);
                 let input = Input {
@@ -159,9 +172,10 @@ impl Task<'_> {
                         end: Pure(hand2[lane]),
                     },
                     speed: Pure(speed0[lane]),
-                    inv_speed: Pure(1.0 / speed0[lane]),
+                    inv_speed: Pure(inv0[lane]),
                     speed_middle: Pure(speed1[lane]),
-                    inv_speed_middle: Pure(1.0 / speed1[lane]),
+                    inv_speed_middle: Pure(inv1[lane]),
+                    push: Pure((speed2[lane] - speed0[lane]) * inv_h),
                 };
                 let state = now.get(lane);
                 let (after, view) = step::<S, RICH, TORQUE, B, T>(&car, &input, &state);
@@ -180,11 +194,12 @@ impl Task<'_> {
                     side: keep(view.side),
                     yaw_rate: keep(state.car[1]),
                     sideslip: keep(sideslip),
-                    roll: keep(B::roll(&state.car).0),
+                    roll: keep(view.posture.roll),
                     handwheel: keep(handwheel),
                     roadwheel: keep(state.phi),
                     roadwheel_speed: state.phi_speed,
                     column: keep(view.column),
+                    load: least_of(view.posture.loads).when(counts, Pure(FREE)),
                 };
                 tally.see(lane, &shown, weight);
                 let turning = if TORQUE {
@@ -194,6 +209,15 @@ impl Task<'_> {
                 };
                 tally.rate_square[lane] += (weight * turning * turning).0;
                 next.put(lane, &after.unless(!going, &state));
+                let (stance, loads) = (view.posture, view.posture.loads);
+                seen.posture[0][lane] = stance.roll.0;
+                seen.posture[1][lane] = stance.roll_rate.0;
+                seen.posture[2][lane] = stance.heave.0;
+                seen.posture[3][lane] = stance.pitch.0;
+                seen.posture[4][lane] = loads[0].0;
+                seen.posture[5][lane] = loads[1].0;
+                seen.posture[6][lane] = loads[2].0;
+                seen.posture[7][lane] = loads[3].0;
                 seen.side[lane] = view.side.0;
                 seen.column[lane] = view.column.0;
                 seen.king_pin[lane] = view.king_pin.0;
@@ -236,7 +260,6 @@ impl Task<'_> {
                 let sample = number / every;
                 for lane in 0..lanes {
                     let state = now.get(lane);
-                    let (roll, roll_rate) = B::roll(&state.car);
                     let channels = [
                         seen.handwheel[lane],
                         state.phi.0,
@@ -250,10 +273,9 @@ impl Task<'_> {
                         state.yaw.0,
                         state.x.0,
                         state.y.0,
-                        roll.0,
-                        roll_rate.0,
                     ];
-                    for (channel, value) in channels.into_iter().enumerate() {
+                    let stance = seen.posture.iter().map(|row| row[lane]);
+                    for (channel, value) in channels.into_iter().chain(stance).enumerate() {
                         traces[(lane * CHANNELS.len() + channel) * samples + sample] = value;
                     }
                 }
@@ -294,6 +316,7 @@ impl Task<'_> {
                 tally.roadwheel[lane],
                 tally.column[lane],
                 tally.rest[lane] * per,
+                tally.load[lane],
                 tally.spun[lane],
                 end.x.0,
                 end.y.0,
@@ -306,8 +329,17 @@ impl Task<'_> {
     }
 }
 
+/// The least of four.
+#[inline(always)]
+fn least_of(loads: [Pure; 4]) -> Pure {
+    let lesser = |a: Pure, b: Pure| a.when(a.0 < b.0, b);
+    lesser(lesser(loads[0], loads[1]), lesser(loads[2], loads[3]))
+}
+
 /// What a step showed, lane beside lane.
 struct Views {
+    /// Roll and its rate, heave, pitch, four loads.
+    posture: [[f64; N]; 8],
     side: [f64; N],
     column: [f64; N],
     king_pin: [f64; N],
@@ -323,6 +355,7 @@ impl Views {
     fn new() -> Self {
         let zero = [0.0; N];
         Self {
+            posture: [zero; 8],
             side: zero,
             column: zero,
             king_pin: zero,

@@ -19,6 +19,8 @@ pub(super) struct Moment {
     pub front: Pure,
     /// Angle of the rear wheels, rad.
     pub rear: Pure,
+    /// Forward acceleration that the speed asks for, m/s2.
+    pub push: Pure,
 }
 
 /// How the states of a car change.
@@ -32,13 +34,28 @@ pub(super) struct Rates<const S: usize> {
     pub side: Pure,
 }
 
+/// How the body stands and what the wheels carry.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Posture {
+    /// Roll angle, rad, to the right.
+    pub roll: Pure,
+    /// Its rate, rad/s.
+    pub roll_rate: Pure,
+    /// Height above the place at rest, m.
+    pub heave: Pure,
+    /// Pitch angle, rad, nose down.
+    pub pitch: Pure,
+    /// Loads, N: front left, front right, rear left, rear right.
+    pub loads: [Pure; 4],
+}
+
 /// A car model of `S` states; the first two are lateral speed (m/s) and yaw rate (rad/s).
 pub(super) trait Body<const S: usize> {
     /// Rates at one instant.
     fn rates<T: Tyre>(car: &Prepared, now: &Moment, state: &[Pure; S]) -> Rates<S>;
 
-    /// Roll angle and roll rate, rad and rad/s, to the right.
-    fn roll(state: &[Pure; S]) -> (Pure, Pure);
+    /// How the body stands on its wheels.
+    fn posture(car: &Prepared, now: &Moment, state: &[Pure; S]) -> Posture;
 
     /// The states of a start.
     fn start(start: &Start) -> [Pure; S];

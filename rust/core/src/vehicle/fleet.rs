@@ -16,6 +16,7 @@ use super::single_track::SingleTrack;
 use super::start::Start;
 use super::summary::KEPT;
 use super::trace::CHANNELS;
+use super::twelve::Twelve;
 
 /// The equations of the car.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub enum Model {
     SingleTrack,
     /// With roll and load transfer.
     LateralRoll,
+    /// With heave, pitch and wheels on tyres: 12 degrees of freedom.
+    Twelve,
 }
 
 /// The law of the tyres.
@@ -205,6 +208,7 @@ impl Fleet<'_> {
             match self.model {
                 Model::SingleTrack => SingleTrack::check(car)?,
                 Model::LateralRoll => LateralRoll::check(car)?,
+                Model::Twelve => Twelve::check(car)?,
             }
             if self.tyre != TyreLaw::Linear {
                 car.require_grip(self.tyre == TyreLaw::MagicFormula)?;
@@ -225,6 +229,7 @@ impl Fleet<'_> {
         let own = match self.model {
             Model::SingleTrack => SingleTrack::quickest(car),
             Model::LateralRoll => LateralRoll::quickest(car),
+            Model::Twelve => Twelve::quickest(car),
         };
         let inverse = |length: f64| if length > 0.0 { fastest / length } else { 0.0 };
         let lateral = (car.front_cornering + car.rear_cornering) / (car.mass * slowest);

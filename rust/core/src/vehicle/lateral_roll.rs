@@ -7,8 +7,8 @@
 use crate::Error;
 use crate::dynamics::Pure;
 
-use super::axle::{across, slip};
-use super::body::{Body, Moment, Rates};
+use super::axle::{across, carried, slip};
+use super::body::{Body, Moment, Posture, Rates};
 use super::parameters::{Parameters, out};
 use super::prepared::{GRAVITY, Prepared};
 use super::single_track::lagged;
@@ -17,6 +17,16 @@ use super::tyre::Tyre;
 
 /// States: lateral speed, yaw rate, lagged slip front and rear, roll angle, roll rate.
 pub(super) struct LateralRoll;
+
+/// Shares of a wheel's static load that have moved to the right, front and rear.
+#[inline(always)]
+fn shifts(car: &Prepared, now: &Moment, state: &[Pure; 6]) -> (Pure, Pure) {
+    let (steady, roll, rate) = (now.speed * state[1], state[4], state[5]);
+    (
+        car.front_shift_roll * roll + car.front_shift_rate * rate + car.front_shift_side * steady,
+        car.rear_shift_roll * roll + car.rear_shift_rate * rate + car.rear_shift_side * steady,
+    )
+}
 
 impl Body<6> for LateralRoll {
     #[inline(always)]
@@ -35,12 +45,7 @@ impl Body<6> for LateralRoll {
             now.speed * car.rear_inv_relaxation,
         );
         let steady = now.speed * r;
-        let front_shift = car.front_shift_roll * roll
-            + car.front_shift_rate * roll_rate
-            + car.front_shift_side * steady;
-        let rear_shift = car.rear_shift_roll * roll
-            + car.rear_shift_rate * roll_rate
-            + car.rear_shift_side * steady;
+        let (front_shift, rear_shift) = shifts(car, now, state);
         let front = car.front().leaning::<T>(front_slip, front_shift);
         let rear = car.rear().leaning::<T>(rear_slip, rear_shift);
         let front_side = across::<T>(front.force, front_angle);
@@ -58,8 +63,21 @@ impl Body<6> for LateralRoll {
     }
 
     #[inline(always)]
-    fn roll(state: &[Pure; 6]) -> (Pure, Pure) {
-        (state[4], state[5])
+    fn posture(car: &Prepared, now: &Moment, state: &[Pure; 6]) -> Posture {
+        let (front, rear) = shifts(car, now, state);
+        let load = |of: Pure, shift: Pure| of * carried(shift);
+        Posture {
+            roll: state[4],
+            roll_rate: state[5],
+            heave: Pure::ZERO,
+            pitch: Pure::ZERO,
+            loads: [
+                load(car.front_wheel_load, -front),
+                load(car.front_wheel_load, front),
+                load(car.rear_wheel_load, -rear),
+                load(car.rear_wheel_load, rear),
+            ],
+        }
     }
 
     fn start(start: &Start) -> [Pure; 6] {

@@ -27,6 +27,8 @@ parameters! {
     sprung_mass: "body.sprung_mass_kg", NotNegative;
     roll_arm: "body.roll_arm_m", Any;
     roll_inertia: "body.roll_inertia_kg_m2", NotNegative;
+    pitch_inertia: "body.pitch_inertia_kg_m2", NotNegative;
+    wheel_radius: "body.wheel_radius_m", NotNegative;
     front_cornering: "front.cornering_n_per_rad", Positive;
     front_load_ratio: "front.load_ratio", NotNegative;
     front_friction: "front.friction", NotNegative;
@@ -41,6 +43,9 @@ parameters! {
     front_roll_stiffness: "front.roll_stiffness_nm_per_rad", NotNegative;
     front_roll_damping: "front.roll_damping_nm_s_per_rad", NotNegative;
     front_roll_centre: "front.roll_centre_m", Any;
+    front_unsprung: "front.unsprung_kg", NotNegative;
+    front_spring: "front.spring_n_per_m", NotNegative;
+    front_tyre_stiffness: "front.tyre_stiffness_n_per_m", NotNegative;
     rear_cornering: "rear.cornering_n_per_rad", Positive;
     rear_load_ratio: "rear.load_ratio", NotNegative;
     rear_friction: "rear.friction", NotNegative;
@@ -53,6 +58,9 @@ parameters! {
     rear_roll_stiffness: "rear.roll_stiffness_nm_per_rad", NotNegative;
     rear_roll_damping: "rear.roll_damping_nm_s_per_rad", NotNegative;
     rear_roll_centre: "rear.roll_centre_m", Any;
+    rear_unsprung: "rear.unsprung_kg", NotNegative;
+    rear_spring: "rear.spring_n_per_m", NotNegative;
+    rear_tyre_stiffness: "rear.tyre_stiffness_n_per_m", NotNegative;
     steering_inertia: "steering.inertia_kg_m2", Positive;
     steering_ratio: "steering.ratio", Positive;
     steering_stiffness: "steering.stiffness_nm_per_rad", Positive;

@@ -23,6 +23,7 @@ lane_rows! {
     front_stiffness,
     front_limit,
     front_shape,
+    front_inv_shape,
     front_curvature,
     front_trail,
     front_caster,
@@ -35,9 +36,19 @@ lane_rows! {
     front_shift_roll,
     front_shift_rate,
     front_shift_side,
+    front_half_track,
+    front_inv_track,
+    front_wheel_load,
+    front_tyre_spring,
+    front_spring,
+    front_damper,
+    front_bar,
+    front_inv_wheel_mass,
+    front_moved,
     rear_stiffness,
     rear_limit,
     rear_shape,
+    rear_inv_shape,
     rear_curvature,
     rear_inv_relaxation,
     rear_load_ratio,
@@ -46,6 +57,15 @@ lane_rows! {
     rear_shift_roll,
     rear_shift_rate,
     rear_shift_side,
+    rear_half_track,
+    rear_inv_track,
+    rear_wheel_load,
+    rear_tyre_spring,
+    rear_spring,
+    rear_damper,
+    rear_bar,
+    rear_inv_wheel_mass,
+    rear_moved,
     /// Acceleration per force and per roll moment, roll acceleration per force and per roll moment.
     side_by_force,
     side_by_roll,
@@ -53,6 +73,12 @@ lane_rows! {
     roll_by_roll,
     roll_stiffness,
     roll_damping,
+    /// Tilting moment of the weight per rad of roll.
+    roll_weight,
+    inv_sprung_mass,
+    inv_pitch_inertia,
+    /// Pitch moment per forward acceleration.
+    pitch_arm,
     ratio,
     stiffness,
     half_gap,
@@ -81,9 +107,13 @@ lane_rows! {
     wheel_damped,
 }
 
-/// 1 over a length, 0 for no length.
+/// 1 over a length (or mass, inertia), 0 for none.
 fn inverse(length: f64) -> f64 {
     if length > 0.0 { 1.0 / length } else { 0.0 }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 impl Prepared {
@@ -97,6 +127,7 @@ impl Prepared {
         );
         let arm = car.sprung_mass * car.roll_arm;
         let det = car.mass * car.roll_inertia - arm * arm;
+        let (front_inv, rear_inv) = (inverse(car.front_track), inverse(car.rear_track));
         let inv_det = if det > 0.0 { 1.0 / det } else { 0.0 };
         // A wheel's static load is half of the axle's; half of what moves goes onto it.
         let shift = |stiffness: f64, track: f64, load: f64| {
@@ -123,6 +154,7 @@ impl Prepared {
             front_stiffness: p(car.front_cornering),
             front_limit: p(car.front_friction * front_load),
             front_shape: p(car.front_shape),
+            front_inv_shape: p(inverse(car.front_shape)),
             front_curvature: p(car.front_curvature),
             front_trail: p(car.front_pneumatic_trail),
             front_caster: p(car.front_caster_trail),
@@ -137,9 +169,22 @@ impl Prepared {
                 car.front_track,
                 front_load,
             )),
+            front_half_track: p(0.5 * car.front_track),
+            front_inv_track: p(inverse(car.front_track)),
+            front_wheel_load: p(0.5 * front_load),
+            front_tyre_spring: p(car.front_tyre_stiffness),
+            front_spring: p(car.front_spring),
+            front_damper: p(2.0 * car.front_roll_damping * square(front_inv)),
+            front_bar: p(front_inv
+                * (car.front_roll_stiffness - 0.5 * car.front_spring * square(car.front_track))),
+            front_inv_wheel_mass: p(inverse(0.5 * car.front_unsprung)),
+            front_moved: p(front_inv
+                * ((front_load / GRAVITY - car.front_unsprung) * car.front_roll_centre
+                    + car.front_unsprung * car.wheel_radius)),
             rear_stiffness: p(car.rear_cornering),
             rear_limit: p(car.rear_friction * rear_load),
             rear_shape: p(car.rear_shape),
+            rear_inv_shape: p(inverse(car.rear_shape)),
             rear_curvature: p(car.rear_curvature),
             rear_inv_relaxation: p(inverse(car.rear_relaxation)),
             rear_load_ratio: p(car.rear_load_ratio),
@@ -152,12 +197,28 @@ impl Prepared {
                 car.rear_track,
                 rear_load,
             )),
+            rear_half_track: p(0.5 * car.rear_track),
+            rear_inv_track: p(inverse(car.rear_track)),
+            rear_wheel_load: p(0.5 * rear_load),
+            rear_tyre_spring: p(car.rear_tyre_stiffness),
+            rear_spring: p(car.rear_spring),
+            rear_damper: p(2.0 * car.rear_roll_damping * square(rear_inv)),
+            rear_bar: p(rear_inv
+                * (car.rear_roll_stiffness - 0.5 * car.rear_spring * square(car.rear_track))),
+            rear_inv_wheel_mass: p(inverse(0.5 * car.rear_unsprung)),
+            rear_moved: p(rear_inv
+                * ((rear_load / GRAVITY - car.rear_unsprung) * car.rear_roll_centre
+                    + car.rear_unsprung * car.wheel_radius)),
             side_by_force: p(car.roll_inertia * inv_det),
             side_by_roll: p(arm * inv_det),
             roll_by_force: p(arm * inv_det),
             roll_by_roll: p(car.mass * inv_det),
             roll_stiffness: p(car.front_roll_stiffness + car.rear_roll_stiffness - arm * GRAVITY),
             roll_damping: p(car.front_roll_damping + car.rear_roll_damping),
+            roll_weight: p(arm * GRAVITY),
+            inv_sprung_mass: p(inverse(car.sprung_mass)),
+            inv_pitch_inertia: p(inverse(car.pitch_inertia)),
+            pitch_arm: p(car.sprung_mass * car.cg_height),
             ratio: p(car.steering_ratio),
             stiffness: p(car.steering_stiffness),
             half_gap: p(0.5 * car.gap),
@@ -200,6 +261,7 @@ impl Prepared {
                 stiffness: self.front_stiffness,
                 limit: self.front_limit,
                 shape: self.front_shape,
+                inv_shape: self.front_inv_shape,
                 curvature: self.front_curvature,
                 trail: self.front_trail,
             },
@@ -216,6 +278,7 @@ impl Prepared {
                 stiffness: self.rear_stiffness,
                 limit: self.rear_limit,
                 shape: self.rear_shape,
+                inv_shape: self.rear_inv_shape,
                 curvature: self.rear_curvature,
                 trail: Pure::ZERO,
             },

@@ -198,6 +198,17 @@ impl<'a> Sampled<'a> {
 }
 
 impl Signal<'_> {
+    /// Whether it keeps its first values for ever.
+    pub(super) fn is_constant(&self) -> bool {
+        match self {
+            Self::Segments(s) => {
+                let still = s.start_s.iter().all(|start| *start <= 0.0);
+                s.count == 1 && still && s.amplitude.iter().all(|a| *a == 0.0)
+            }
+            Self::Sampled(_) => false,
+        }
+    }
+
     /// A lower bound of its values.
     pub(super) fn least(&self) -> f64 {
         match self {

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::dynamics::Pure;
 
 use super::axle::{across, slip};
-use super::body::{Body, Moment, Rates};
+use super::body::{Body, Moment, Posture, Rates};
 use super::parameters::Parameters;
 use super::prepared::Prepared;
 use super::start::Start;
@@ -43,8 +43,15 @@ impl Body<4> for SingleTrack {
     }
 
     #[inline(always)]
-    fn roll(_state: &[Pure; 4]) -> (Pure, Pure) {
-        (Pure::ZERO, Pure::ZERO)
+    fn posture(car: &Prepared, _now: &Moment, _state: &[Pure; 4]) -> Posture {
+        let (front, rear) = (car.front_wheel_load, car.rear_wheel_load);
+        Posture {
+            roll: Pure::ZERO,
+            roll_rate: Pure::ZERO,
+            heave: Pure::ZERO,
+            pitch: Pure::ZERO,
+            loads: [front, front, rear, rear],
+        }
     }
 
     fn start(start: &Start) -> [Pure; 4] {

@@ -8,7 +8,7 @@ use crate::dynamics::Pure;
 use crate::projections::luz;
 
 use super::angle::{cos, sin};
-use super::body::{Body, Moment};
+use super::body::{Body, Moment, Posture};
 use super::prepared::Prepared;
 use super::turn::{Pull, turn};
 use super::tyre::Tyre;
@@ -80,11 +80,15 @@ pub(super) struct Input {
     pub speed_middle: Pure,
     /// See `speed_middle`.
     pub inv_speed_middle: Pure,
+    /// How fast the speed changes, m/s2.
+    pub push: Pure,
 }
 
 /// What is seen on the way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
+    /// How the body stands at the start.
+    pub posture: Posture,
     /// Lateral acceleration at the start, m/s2.
     pub side: Pure,
     /// Torque in the column at the start, Nm.
@@ -165,16 +169,14 @@ pub(super) fn step<const S: usize, const RICH: bool, const TORQUE: bool, B: Body
     } else {
         input.hand
     };
-    let first = B::rates::<T>(
-        car,
-        &Moment {
-            speed: input.speed,
-            inv_speed: input.inv_speed,
-            front: now.phi,
-            rear: now.rear,
-        },
-        &now.car,
-    );
+    let begin = Moment {
+        speed: input.speed,
+        inv_speed: input.inv_speed,
+        front: now.phi,
+        rear: now.rear,
+        push: input.push,
+    };
+    let first = B::rates::<T>(car, &begin, &now.car);
     let mut middle = now.car;
     for i in 0..S {
         middle[i] = middle[i] + half * first.change[i];
@@ -187,6 +189,7 @@ pub(super) fn step<const S: usize, const RICH: bool, const TORQUE: bool, B: Body
             inv_speed: input.inv_speed_middle,
             front: phi.middle,
             rear: rear_middle,
+            push: input.push,
         },
         &middle,
     );
@@ -234,6 +237,7 @@ pub(super) fn step<const S: usize, const RICH: bool, const TORQUE: bool, B: Body
             rear: follow(car, now.rear, phi_end),
         },
         Seen {
+            posture: B::posture(car, &begin, &now.car),
             side: first.side,
             column: column(car, psi.start, now.phi),
             king_pin: first.king_pin,

@@ -4,7 +4,7 @@ use crate::dynamics::Pure;
 use crate::effects::Lane;
 
 /// How many numbers are kept of a run.
-pub const KEPT: usize = 20;
+pub const KEPT: usize = 21;
 
 /// Their names.
 pub const SUMMARY: [&str; KEPT] = [
@@ -21,6 +21,7 @@ pub const SUMMARY: [&str; KEPT] = [
     "roadwheel_max_rad",
     "column_torque_max_nm",
     "roadwheel_at_rest_share",
+    "wheel_load_min_n",
     "spun_s",
     "end_x_m",
     "end_y_m",
@@ -45,6 +46,7 @@ pub(super) struct Tally<const N: usize> {
     pub roadwheel: [f64; N],
     pub column: [f64; N],
     pub rest: [f64; N],
+    pub load: [f64; N],
     pub spun: [f64; N],
 }
 
@@ -67,6 +69,8 @@ pub(super) struct Shown {
     pub roadwheel_speed: Pure,
     /// Torque in the column.
     pub column: Pure,
+    /// Least load of a wheel.
+    pub load: Pure,
 }
 
 impl<const N: usize> Tally<N> {
@@ -87,6 +91,7 @@ impl<const N: usize> Tally<N> {
             roadwheel: zero,
             column: zero,
             rest: zero,
+            load: [f64::INFINITY; N],
             spun: [f64::INFINITY; N],
         }
     }
@@ -105,6 +110,8 @@ impl<const N: usize> Tally<N> {
         most(&mut self.handwheel[lane], shown.handwheel);
         most(&mut self.roadwheel[lane], shown.roadwheel);
         most(&mut self.column[lane], shown.column);
+        let least = self.load[lane];
+        self.load[lane] = shown.load.when(shown.load.0 < least, Pure(least)).0;
         self.side_square[lane] += (weight * shown.side * shown.side).0;
         self.rest[lane] += weight.when(shown.roadwheel_speed.0 == 0.0, Pure::ZERO).0;
     }

@@ -1,7 +1,7 @@
 //! The channels of a recorded run.
 
 /// Their names.
-pub const CHANNELS: [&str; 14] = [
+pub const CHANNELS: [&str; 20] = [
     "handwheel_rad",
     "roadwheel_rad",
     "roadwheel_speed_rad_s",
@@ -16,4 +16,10 @@ pub const CHANNELS: [&str; 14] = [
     "y_m",
     "roll_rad",
     "roll_rate_rad_s",
+    "heave_m",
+    "pitch_rad",
+    "load_front_left_n",
+    "load_front_right_n",
+    "load_rear_left_n",
+    "load_rear_right_n",
 ];

@@ -18,6 +18,8 @@ pub(super) struct Grip {
     pub limit: Pure,
     /// Shape factor C of the Magic Formula.
     pub shape: Pure,
+    /// 1 over it.
+    pub inv_shape: Pure,
     /// Curvature factor E of the Magic Formula.
     pub curvature: Pure,
     /// Pneumatic trail at no slip, m.
@@ -96,10 +98,11 @@ impl Tyre for MagicFormula {
     #[inline(always)]
     fn contact(grip: &Grip, slip: Pure) -> Contact {
         let limit = grip.limit.clamp(Pure(AIRBORNE), Pure(f64::MAX));
-        let x = grip.stiffness * slip / (grip.shape * limit);
+        let reach = grip.stiffness * slip / limit;
+        let x = reach * grip.inv_shape;
         let bent = x - grip.curvature * (x - atan(x));
         let force = -(grip.limit * sin(grip.shape * atan(bent)));
-        let share = sliding(grip, slip);
+        let share = (reach.abs() * Pure(1.0 / 3.0)).clamp(Pure::ZERO, Pure::ONE);
         let left = Pure::ONE - share;
         let trail = grip.trail * left * left * left / (left + share * share * Pure(1.0 / 3.0));
         Contact {
