@@ -23,6 +23,9 @@ EffortOption = Annotated[
     str | None,
     typer.Option("--effort", metavar="E", help="Of the search: quick, usual or hard; other than the file's."),
 ]
+Steer = Annotated[
+    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
+]
 JournalOption = Annotated[
     str | None,
     typer.Option("--journal", metavar="F.jsonl", help="Keep finished cells here; an interrupted study goes on."),
@@ -34,6 +37,7 @@ def optimise(
     study: StudyFile,
     seed: Seed = None,
     effort: EffortOption = None,
+    steer: Steer = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
@@ -42,7 +46,7 @@ def optimise(
 
     Exit code 2 where no signal keeps the car in the corridor below the limit of the lateral acceleration.
     """
-    result = _run("optimise", study, seed, effort, None, json, report)
+    result = _run("optimise", study, (seed, effort, steer), None, json, report)
     return exits.DONE if result.feasible else exits.INCONCLUSIVE
 
 
@@ -51,13 +55,17 @@ def robust(
     study: StudyFile,
     seed: Seed = None,
     effort: EffortOption = None,
-    journal: JournalOption = None,
+    steer: Steer = None,
+    journal: Steer = Annotated[
+    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
+]
+JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
 ) -> int:
     """Try signals optimised for each freeplay and friction on the cars of all others."""
-    _run("robust", study, seed, effort, journal, json, report)
+    _run("robust", study, (seed, effort, steer), journal, json, report)
     return exits.DONE
 
 
@@ -66,13 +74,17 @@ def sensitivity(
     study: StudyFile,
     seed: Seed = None,
     effort: EffortOption = None,
-    journal: JournalOption = None,
+    steer: Steer = None,
+    journal: Steer = Annotated[
+    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
+]
+JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
 ) -> int:
     """Share out feasibility, J_w and rank among the parameters of the car."""
-    _run("sensitivity", study, seed, effort, journal, json, report)
+    _run("sensitivity", study, (seed, effort, steer), journal, json, report)
     return exits.DONE
 
 
@@ -81,18 +93,27 @@ def map_(
     study: StudyFile,
     seed: Seed = None,
     effort: EffortOption = None,
-    journal: JournalOption = None,
+    steer: Steer = None,
+    journal: Steer = Annotated[
+    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
+]
+JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
 ) -> int:
     """Optimise over lengths of the corridor and speeds."""
-    _run("map", study, seed, effort, journal, json, report)
+    _run("map", study, (seed, effort, steer), journal, json, report)
     return exits.DONE
 
 
 def _run(
-    what: str, place: str, seed: int | None, effort: str | None, journal: str | None, json: bool, report: str | None
+    what: str,
+    place: str,
+    given: tuple[int | None, str | None, str | None],
+    journal: str | None,
+    json: bool,
+    report: str | None,
 ) -> Any:
     from .. import manoeuvre as studies
     from .output import say
@@ -100,7 +121,8 @@ def _run(
     from .report import check_place, written
 
     check_place(report, [place])
-    study = studies.load(place)
+    seed, effort, steer = given
+    study = studies.load(place, **({} if steer is None else {"steer": steer}))
     shared = {**study.search, **{k: v for k, v in (("seed", seed), ("effort", effort)) if v is not None}}
     own = dict(getattr(study, what, {}))
     if what != "optimise":

@@ -53,13 +53,15 @@ class Study:
         return manoeuvre(self.name, **self.options)
 
 
-def load(path: str | Path) -> Study:
+def load(path: str | Path, **others: Any) -> Study:
     """Read a study file.
 
     Parameters
     ----------
     path : path
         TOML; a car that is a file's name is looked for beside it.
+    **others
+        Values of the first section that are other than the file's.
 
     Raises
     ------
@@ -84,6 +86,7 @@ def load(path: str | Path) -> Study:
         for inner in value if isinstance(value, dict) and known else ():
             if inner not in known:
                 raise ModelError(f"[{key}] does not know '{inner}'", where, f"Known are: {', '.join(known)}.")
+    read |= others
     if not isinstance(read.get("manoeuvre"), str):
         raise ModelError("names no manoeuvre", where, 'Add manoeuvre = "avoiding" or another.')
     options = {k: read[k] for k in TOP[2:] if k in read}
