@@ -24,7 +24,7 @@ EffortOption = Annotated[
     typer.Option("--effort", metavar="E", help="Of the search: quick, usual or hard; other than the file's."),
 ]
 Steer = Annotated[
-    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
+    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic), not the file's.")
 ]
 JournalOption = Annotated[
     str | None,
@@ -56,10 +56,7 @@ def robust(
     seed: Seed = None,
     effort: EffortOption = None,
     steer: Steer = None,
-    journal: Steer = Annotated[
-    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
-]
-JournalOption = None,
+    journal: JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
@@ -75,10 +72,7 @@ def sensitivity(
     seed: Seed = None,
     effort: EffortOption = None,
     steer: Steer = None,
-    journal: Steer = Annotated[
-    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
-]
-JournalOption = None,
+    journal: JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
@@ -94,10 +88,7 @@ def map_(
     seed: Seed = None,
     effort: EffortOption = None,
     steer: Steer = None,
-    journal: Steer = Annotated[
-    str | None, typer.Option("--steer", metavar="S", help="angle (kinematic) or torque (dynamic); other than the file's.")
-]
-JournalOption = None,
+    journal: JournalOption = None,
     json: Json = False,
     report: Report = None,
     debug: Debug = False,
