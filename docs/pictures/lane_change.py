@@ -67,9 +67,10 @@ def take(browser: Any, name: str, figure: Any) -> None:
     """Draw a figure and keep it as a PNG."""
     made = embed.safe_json(values(figure))
     text = (
-        f"<!DOCTYPE html><meta charset='utf-8'><body style='margin:8px;background:#fff;width:{WIDTH}px'><div id='a'></div>"
-        f"<script>{embed.safe_script(get_plotlyjs())}</script><script>const made={made};"
-        f"Plotly.newPlot('a',made.data,{{...made.layout,width:{WIDTH}}},{{staticPlot:true}});document.title='drawn'</script>"
+        f"<!DOCTYPE html><meta charset='utf-8'><body style='margin:8px;background:#fff;width:{WIDTH}px'>"
+        f"<div id='a'></div><script>{embed.safe_script(get_plotlyjs())}</script><script>const made={made};"
+        f"Plotly.newPlot('a',made.data,{{...made.layout,width:{WIDTH}}},{{staticPlot:true}});"
+        "document.title='drawn'</script>"
     )
     page = browser.new_page(viewport={"width": WIDTH + 16, "height": 600}, device_scale_factor=1.25)
     page.set_content(text)

@@ -24,8 +24,18 @@ STEP_S = 0.005
 # The gain is read off a small constant input after this time.
 SETTLED_S = 6.0
 SMALL = {"angle": 0.01, "torque": 0.1}
-# What a car has before anything is varied: the paper's reference model is linear.
-NOMINAL = {"freeplay.gap_rad": 0.0, "coulomb.level_nm": 0.0, "stiction.extra_nm": 0.0, "stribeck.extra_nm": 0.0}
+# What would keep a small input from turning the car; the paper's reference model has none of it.
+NOMINAL = dict.fromkeys(
+    (
+        "freeplay.gap_rad",
+        "coulomb.level_nm",
+        "stiction.extra_nm",
+        "stribeck.extra_nm",
+        "handwheel.coulomb_nm",
+        "handwheel.stiction_nm",
+    ),
+    0.0,
+)
 
 
 @dataclass(frozen=True)
