@@ -117,4 +117,5 @@ def test_the_examples_are_studies(name):
 
     study = load(EXAMPLES / f"{name}.toml")
     assert study.task().track.name == name
+    assert load(EXAMPLES / f"{name}.toml", steer="torque").task().unit == "Nm"
     assert study.robust["friction_nm"] == (0.0, 4.05, 8.1) and len(study.map["speeds_m_s"]) == 5

@@ -1,11 +1,13 @@
 """Draws the pictures of docs/double-lane-change.md: a drive, the table of signals on cars, angle beside torque.
 
-Needs playwright and Chromium (``python docs/pictures/lane_change.py`` from the top of the repository; some minutes).
+Needs playwright and Chromium (``python docs/pictures/lane_change.py [FOLDER]`` from the top of the repository). It takes
+some minutes; with a folder the journals of the studies are kept there, and a second time is quick.
 """
 
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -82,10 +84,14 @@ def take(browser: Any, name: str, figure: Any) -> None:
 
 def main() -> None:
     """Compute what the page shows and take the pictures."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else None
     found: dict[str, dict[str, Robustness]] = {}
     for name in ("overtaking", "avoiding"):
-        place = EXAMPLES / f"{name}.toml"
-        found[name] = {steer: robust(load(place, steer=steer).task()) for steer in ("angle", "torque")}
+        found[name] = {}
+        for steer in ("angle", "torque"):
+            task = load(EXAMPLES / f"{name}.toml", steer=steer).task()
+            journal = None if folder is None else folder / f"{name}-{steer}.jsonl"
+            found[name][steer] = robust(task, journal=journal)
     with sync_playwright() as p:
         path = shutil.which("chromium") or shutil.which("google-chrome")
         browser = p.chromium.launch(executable_path=path, args=["--no-sandbox"])

@@ -43,7 +43,7 @@ def drives(optimum: Optimum) -> Any:
             "Path of the reference point, the car, the corridor",
             "Handwheel" if task.steer == "angle" else "Steering torque",
             "Lateral acceleration",
-            "kappa: inverse of the distance from the nearest edge",
+            f"kappa: inverse of the distance from the nearest edge (outside and above: {LARGEST_KAPPA:g})",
         ],
     )
     _corridor(picture, task)
