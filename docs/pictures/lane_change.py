@@ -1,7 +1,7 @@
 """Draws the pictures of docs/double-lane-change.md: a drive, the table of signals on cars, angle beside torque.
 
-Needs playwright and Chromium (``python docs/pictures/lane_change.py [FOLDER]`` from the top of the repository). It takes
-some minutes; with a folder the journals of the studies are kept there, and a second time is quick.
+Needs playwright and Chromium (``python docs/pictures/lane_change.py [FOLDER]`` from the top of the repository). With a
+folder the journals of the studies are kept there: the first time takes minutes, a second time seconds.
 """
 
 from __future__ import annotations
