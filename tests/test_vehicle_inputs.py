@@ -147,6 +147,7 @@ def test_signals_and_corridors_that_do_not_fit_are_refused(made, said):
     [
         ({"handwheel_rad": Pieces(start_s=[1.0, 0.5], level=0.1)}, "start_s is 0.5"),
         ({"handwheel_rad": Pieces(start_s=[0.0], amplitude=0.1, frequency_hz=-1.0)}, "frequency_hz is -1"),
+        ({"speed_m_s": Pieces(start_s=[0.5], level=20.0)}, "start of speed_m_s is 0.5"),
         ({"handwheel_rad": Samples([0.0, 0.1, 0.2], 100.0)}, "samples has 3 values"),
         ({"handwheel_rad": Samples([0.0, 0.1, 0.2, 0.3], 0.0)}, "sample_rate_hz is 0"),
         ({"corridor": Corridor(from_m=[5.0], to_m=[5.0], right_m=-1.0, left_m=1.0)}, "a section ends after it begins"),

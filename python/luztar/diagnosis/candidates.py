@@ -180,6 +180,19 @@ def beyond_the_law(base: Search, better: Search, explained: float) -> bool:
     return fall >= LAW_ACCURACY * explained or fall >= MUCH_OF_THE_REST * base.held_out_loss
 
 
+def as_good_as_a_law(found: Sequence[Candidate], base: Search) -> list[Candidate]:
+    """Return the best candidate and those that take off as much as it does, but for what a law may leave.
+
+    A law that is right leaves a little in a shape of its own: a rival so close behind may be the right one, however
+    surely the numbers prefer the best.
+    """
+    if not found:
+        return []
+    best = found[0]
+    leave = LAW_ACCURACY * max(base.held_out_loss - best.held_out_loss, 0.0)
+    return [c for c in found if c.held_out_loss - best.held_out_loss <= leave]
+
+
 def equivalent(found: Sequence[Candidate]) -> list[Candidate]:
     """Return the best candidate and those that the data cannot tell from it; decoys compete like the others."""
     if not found:

@@ -19,6 +19,7 @@ from .folds import Folds
 from .given import given_model, given_runs
 from .intervals import Estimate, estimates
 from .misfit import Misfit, misfit
+from .own_sensors import levelled
 from .plausible import prepare_measured
 from .prepare import Prepared
 from .profile import Problem, State, owners, state
@@ -136,7 +137,8 @@ def fit(model: Model, runs: Run | Sequence[Run], held_out: Run | Sequence[Run] =
 
         return fit_free(model, not_held_out(fitted, left_out), left_out)
     unseen = prepare_measured(left_out, model) if left_out else ()
-    return fit_prepared(model, prepare_measured(not_held_out(fitted, left_out), model), unseen)
+    prepared = levelled(prepare_measured(not_held_out(fitted, left_out), model), model)
+    return fit_prepared(model, prepared, unseen)
 
 
 def not_held_out(runs: Sequence[Run], held_out: Sequence[Run]) -> list[Run]:

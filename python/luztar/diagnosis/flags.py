@@ -35,7 +35,7 @@ class Flag:
     Attributes
     ----------
     kind : str
-        ``at_bound``, ``no_influence`` or ``not_passive``.
+        ``at_bound``, ``no_influence``, ``not_passive``, ``own_offset`` or ``own_delay``.
     parameter : str
         ``effect.parameter``; of ``not_passive`` the one that does most of it.
     text : str
@@ -60,7 +60,25 @@ def flags_of(fitted: Fit) -> tuple[Flag, ...]:
     silent = tuple(_without_influence(fitted))
     mute = {f.parameter.partition(".")[0] for f in silent if "contributes" in f.text}
     bounds = (f for f in _at_bounds(fitted) if f.parameter.partition(".")[0] not in mute)
-    return (*bounds, *silent, *_not_passive(fitted))
+    return (*bounds, *silent, *_not_passive(fitted), *_own_sensors(fitted))
+
+
+def _own_sensors(fitted: Fit) -> Iterator[Flag]:
+    unit = fitted.model.structure.effort_unit
+    key = f"offset.level_{'nm' if fitted.model.structure.motion_unit == 'rad' else 'n'}"
+    for r in fitted.runs:
+        if r.own_offset:
+            way = "above" if r.own_offset > 0.0 else "below"
+            size = f"{abs(r.own_offset):.3g} {unit}"
+            text = f"{r.name} lies {size} {way} the other runs everywhere; taken off. Was the load cell zeroed anew?"
+            yield Flag("own_offset", key, text)
+        if r.own_delay_s:
+            way = "later" if r.own_delay_s > 0.0 else "earlier"
+            size = f"{1e3 * abs(r.own_delay_s):.3g} ms"
+            text = (
+                f"{r.name}: its {fitted.model.structure.effort} comes {size} {way} than in the other runs; taken off."
+            )
+            yield Flag("own_delay", "delay.time_s", text)
 
 
 def _at_bounds(fitted: Fit) -> Iterator[Flag]:

@@ -1,9 +1,10 @@
 """The noise floor: what a model of this kind could not remove however many effects it had.
 
-A saturated model of the state (position, speed, direction, travel since the reversal, acceleration, slow time) is
-fitted away from the reversal zones. What it leaves where it was fitted is too little, what it leaves on a run it has
-not seen is too much; the floor is between them (root of the mean square) and both are given. Inside the reversal zones
-the instant of the start, known to one step of the sensor, adds its own part.
+Where runs repeat a motion, their differences tell it (see ``repeats``). Else a saturated model of the state (position,
+speed, direction, travel since the reversal, acceleration, slow time) is fitted away from the reversal zones. What it
+leaves where it was fitted is too little, what it leaves on a run it has not seen is too much; the floor is between them
+(root of the mean square) and both are given. Inside the reversal zones the instant of the start, known to one step of
+the sensor, adds its own part.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from .. import _core
 from .equations import Blocks, loss
 from .folds import Folds
 from .prepare import Prepared
+from .repeats import repeats
 
 # Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
 # +-60 degrees each spans 3.4 degrees, a ninth of it.
@@ -29,6 +31,9 @@ TRAVEL_KNOTS = (0.0, 0.004, 0.008, 0.015, 0.022, 0.03, 0.04, 0.055, 0.075, 0.1, 
 # Where what was not seen is missed by more than twice what was fitted, the model is too large for so few strokes; that
 # says nothing of the noise.
 LARGEST_RATIO = 2.0
+SATURATED = "saturated model of the state, between what it leaves where it was fitted (low) and where it was not (high)"
+# Standard errors of a 95 % interval.
+SURE = 2.0
 # Far below one sample's weight.
 RIDGE = 1e-6
 
@@ -157,11 +162,18 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
         trained = loss(blocks.gram[seen], fitted) / blocks.samples[seen]
         ratio = float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300)))
         unseen = inside * min(max(ratio, 1.0), LARGEST_RATIO**2)
+    repeated = repeats(runs)
+    if repeated is not None:
+        noise, error = repeated.rms, SURE * repeated.error
+        method = f"repeats in the same state, over {100.0 * repeated.covered:.0f} % of the moving record"
+        return _with_reversals(runs, noise, max(noise - error, 0.0), noise + error, unit, method)
     moving = np.sqrt((inside + unseen) / 2.0)
-    return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit)
+    return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit, SATURATED)
 
 
-def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: float, unit: str) -> NoiseFloor:
+def _with_reversals(
+    runs: Sequence[Prepared], moving: float, low: float, high: float, unit: str, method: str
+) -> NoiseFloor:
     """Add what the uncertain starts of the strokes leave in the reversal zones."""
     level = friction_level(runs)
     squares, samples, zone_samples = 0.0, 0, 0
@@ -182,8 +194,7 @@ def _with_reversals(runs: Sequence[Prepared], moving: float, low: float, high: f
         moving,
         float(np.sqrt(moving**2 + squares / max(zone_samples, 1))),
         unit,
-        "saturated model of the state, between what it leaves where it was fitted (low) and where it was not (high); "
-        "in the reversal zones plus the uncertain instant of the start",
+        f"{method}; in the reversal zones plus the uncertain instant of the start",
     )
 
 

@@ -77,6 +77,8 @@ class Prepared:
     duration_s : float
     has_load : bool
         Whether the load was recorded.
+    own_offset, own_delay_s : float
+        What the sensor of this run alone had, taken off the effort already.
     """
 
     name: str
@@ -93,6 +95,8 @@ class Prepared:
     step_s: float
     duration_s: float
     has_load: bool
+    own_offset: float = 0.0
+    own_delay_s: float = 0.0
 
 
 def prepare(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:

@@ -13,6 +13,7 @@ from .diagnose import Diagnosis
 from .fit import not_held_out
 from .floor import NoiseFloor, noise_floor
 from .given import given_model, given_runs
+from .own_sensors import levelled
 from .plausible import prepare_measured
 from .step import Step as Step
 
@@ -140,7 +141,7 @@ def study(
 
         left = not_held_out(runs, held_out)
         return study_free(model, left, held_out, max_effects=max_effects, progress=progress)
-    prepared = prepare_measured(not_held_out(runs, held_out), model)
+    prepared = levelled(prepare_measured(not_held_out(runs, held_out), model), model)
     unseen = prepare_measured(held_out, model) if len(held_out) else ()
     floor = noise_floor(prepared, model.structure.effort_unit)
     steps, looks = climb(Loop(model, prepared, unseen, floor, progress), max_effects)

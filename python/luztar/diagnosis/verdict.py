@@ -7,7 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .candidates import PRACTICAL_GAIN, SET_ERRORS, Candidate, baseline, beyond_the_law, equivalent, gain
+from .candidates import (
+    PRACTICAL_GAIN,
+    SET_ERRORS,
+    Candidate,
+    as_good_as_a_law,
+    baseline,
+    beyond_the_law,
+    equivalent,
+    gain,
+)
 from .chance import p_value_floor
 from .equations import start_uncertainty_s
 from .fit import Fit, predict, predict_folds
@@ -151,6 +160,12 @@ def judge(
         # With few strokes a standard error says little: a rival counts if it, too, gains in every fold.
         rest = [c for c in same if not few or worth_with_few(fitted, c, rivals)]
         real = tuple(c.name for c in rest if not c.card.is_decoy)
+        # Where the numbers tell them apart by less than a law is good for, the set takes them in as far as it may.
+        close = [c.name for c in as_good_as_a_law(rivals, baseline(fitted)) if not c.card.is_decoy]
+        wider = (*real, *(n for n in close if n not in real))
+        if len(wider) <= LARGEST_SET:
+            real = wider
+            names = (*names, *(n for n in real if n not in names))
         if len(real) == 1:
             return Judgement("named", real, names, simpler, "")
         if len(real) <= LARGEST_SET:

@@ -174,7 +174,9 @@ impl Recording {
             if friction {
                 let slide = self.slide(contact);
                 for column in &mut raw {
-                    slide.hold_at_rest(column);
+                    if !effect.at_rest {
+                        slide.hold_at_rest(column);
+                    }
                     multiply(column, &slide.state);
                 }
             } else if behind && let Some(engaged) = &self.slide(contact).engaged {

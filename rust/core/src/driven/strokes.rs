@@ -41,7 +41,6 @@ impl Phases {
         };
         for (k, stroke) in strokes.iter().enumerate() {
             let start = seen[stroke.onset];
-            // Within a step of where it starts, the position has been at rest.
             let rest = seen[..stroke.onset]
                 .iter()
                 .rev()
@@ -49,7 +48,9 @@ impl Phases {
                 .count();
             let end = strokes.get(k + 1).map_or(n, |next| next.onset);
             let inside = stroke.onset..end;
-            phases.rest_s[inside.clone()].fill(rest as f64 / sample_rate_hz);
+            // On its way into the rest and out of it the position was within half a step of it as well.
+            let rest_s = rest as f64 / sample_rate_hz - 2.0 * stroke.onset_uncertainty_s;
+            phases.rest_s[inside.clone()].fill(rest_s.max(0.0));
             phases.direction[inside.clone()].fill(stroke.direction);
             for (travelled, x) in phases.travelled[inside.clone()]
                 .iter_mut()

@@ -42,10 +42,10 @@ impl Law for Dwell {
         structures: &[],
     };
     const COLUMNS: usize = 1;
+    const AT_REST: bool = true;
 
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let grown = L::splat(1.0) - (motion.rest_s * L::splat(-1.0 / inner[0])).exp();
-        // After break-away the excess fades over a quarter per cent of the range, 0.3 degrees of 120.
-        out[0] = grown * (motion.travelled * L::splat(-400.0)).exp();
+        out[0] = grown * motion.left_of_rest();
     }
 }

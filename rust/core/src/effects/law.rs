@@ -28,6 +28,18 @@ pub struct Motion<L> {
     pub load_n: L,
 }
 
+/// How quickly a contact forgets that it was at rest: e-folds per range of motion travelled. A quarter per cent of the
+/// range, 0.3 degrees of 120.
+const FORGOTTEN: f64 = 400.0;
+
+impl<L: Lane> Motion<L> {
+    /// What is left after break-away of the extra that a contact had at rest: 1 at break-away, 0 a little later.
+    #[inline]
+    pub fn left_of_rest(&self) -> L {
+        (self.travelled * L::splat(-FORGOTTEN)).exp()
+    }
+}
+
 /// The one friction state of a contact, as the effects of a model shape it.
 ///
 /// The state is `s = luz(u, gap / 2) / breakaway` with the stop operator `u` of radius `breakaway + gap / 2`: without
@@ -50,6 +62,9 @@ pub trait Law {
     const COLUMNS: usize;
     /// Whether the law changes the columns of other effects, through the contact or the delay.
     const SHAPES_OTHERS: bool = false;
+    /// Whether a friction level belongs to the contact at rest: it takes effect at once. What depends on the motion does
+    /// so as the contact slides.
+    const AT_REST: bool = false;
 
     /// Writes the `COLUMNS` basis values for one state of motion.
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]);
@@ -127,6 +142,8 @@ pub struct Effect {
     pub columns: usize,
     /// See [`Law::SHAPES_OTHERS`].
     pub shapes_others: bool,
+    /// See [`Law::AT_REST`].
+    pub at_rest: bool,
     /// The basis along a record.
     pub along: fn(&Channels<'_>, &[f64]) -> Vec<Vec<f64>>,
     /// See [`Law::contact`].
@@ -143,6 +160,7 @@ impl Effect {
             card: &T::CARD,
             columns: T::COLUMNS,
             shapes_others: T::SHAPES_OTHERS,
+            at_rest: T::AT_REST,
             along: along::<T>,
             contact: T::contact,
             delay_s: T::delay_s,

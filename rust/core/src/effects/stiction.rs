@@ -32,10 +32,13 @@ impl Law for Stiction {
         structures: &[],
     };
     const COLUMNS: usize = 1;
+    const AT_REST: bool = true;
 
     fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
-        // The limit of Stribeck's law for a speed that goes to zero: the slowest the record resolves.
+        // Either the limit of Stribeck's law for a speed that goes to zero, the slowest the record resolves, or what is
+        // left over of the rest a little after break-away: whichever is more.
         let ratio = motion.speed / motion.slowest_speed;
-        out[0] = (-(ratio * ratio)).exp();
+        let slow = (-(ratio * ratio)).exp();
+        out[0] = slow.clamp(motion.left_of_rest(), L::splat(1.0));
     }
 }

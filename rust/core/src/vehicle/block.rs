@@ -146,7 +146,7 @@ impl Task<'_> {
         }
         let (mut inv0, mut inv1) = (speed0.map(|u| 1.0 / u), speed1.map(|u| 1.0 / u));
         let mut seen = Views::new();
-        let mut next = now.clone();
+        let mut before = now.clone();
         for number in 0..=steps {
             let time = number as f64 * h;
             let (middle, end) = (time + 0.5 * h, (number + 1) as f64 * h);
@@ -163,6 +163,11 @@ impl Task<'_> {
                     inv1[lane] = 1.0 / speed1[lane];
                 }
             }
+            let recorded = !traces.is_empty() && number % every == 0;
+            if recorded {
+                before.clone_from(&now);
+            }
+            let goes_on = number < steps;
             for lane in 0..N {
                 let car = Prepared::gather(&table, lane);
                 let input = Input {
@@ -186,7 +191,7 @@ impl Task<'_> {
                 let fits = sideslip.0.abs() <= 1.0;
                 let spun = driving & !fits;
                 tally.spun[lane] = Pure(time).when(spun, Pure(tally.spun[lane])).0;
-                let going = driving & fits & (time < until[lane] - slack);
+                let going = goes_on & driving & fits & (time < until[lane] - slack);
                 let counts = driving & fits & (time <= until[lane] + slack);
                 let weight = Pure(h).when(going, Pure::ZERO);
                 let keep = |value: Pure| value.when(counts, Pure::ZERO);
@@ -208,7 +213,7 @@ impl Task<'_> {
                     Pure(rate[lane])
                 };
                 tally.rate_square[lane] += (weight * turning * turning).0;
-                next.put(lane, &after.unless(!going, &state));
+                now.put(lane, &after.unless(!going, &state));
                 let (stance, loads) = (view.posture, view.posture.loads);
                 seen.posture[0][lane] = stance.roll.0;
                 seen.posture[1][lane] = stance.roll_rate.0;
@@ -256,10 +261,10 @@ impl Task<'_> {
                     tally.outside[lane] += (over * Pure(seen.weight[lane])).0;
                 }
             }
-            if !traces.is_empty() && number % every == 0 {
+            if recorded {
                 let sample = number / every;
                 for lane in 0..lanes {
-                    let state = now.get(lane);
+                    let state = before.get(lane);
                     let channels = [
                         seen.handwheel[lane],
                         state.phi.0,
@@ -279,9 +284,6 @@ impl Task<'_> {
                         traces[(lane * CHANNELS.len() + channel) * samples + sample] = value;
                     }
                 }
-            }
-            if number < steps {
-                std::mem::swap(&mut now, &mut next);
             }
             let jumped = hand.jumps(end, slack);
             hand0 = hand2;

@@ -164,7 +164,7 @@ impl Fleet<'_> {
     fn check(&self) -> Result<(), Error> {
         let lanes = self.cars.len();
         for (name, got) in [
-            ("cars", if lanes == 0 { 0 } else { lanes }),
+            ("cars", lanes),
             ("starts", self.starts.len()),
             ("durations_s", self.durations_s.len()),
         ] {
@@ -203,6 +203,11 @@ impl Fleet<'_> {
         let fastest = self.speed.most();
         if !(slowest > 0.0 && fastest.is_finite()) {
             return Err(out("speed_m_s", slowest, "(0, inf)"));
+        }
+        if self.speed.begins_s() > 0.0 {
+            let interval =
+                "(-inf, 0]: before its first piece a signal is 0, and a car stands still";
+            return Err(out("start of speed_m_s", self.speed.begins_s(), interval));
         }
         for car in self.cars {
             match self.model {

@@ -198,6 +198,17 @@ impl<'a> Sampled<'a> {
 }
 
 impl Signal<'_> {
+    /// The latest time at which a row begins; before it its value is 0.
+    pub(super) fn begins_s(&self) -> f64 {
+        match self {
+            Self::Segments(s) => {
+                let firsts = s.start_s.iter().step_by(s.count);
+                firsts.fold(f64::NEG_INFINITY, |late, start| late.max(*start))
+            }
+            Self::Sampled(_) => f64::NEG_INFINITY,
+        }
+    }
+
     /// Whether it keeps its first values for ever.
     pub(super) fn is_constant(&self) -> bool {
         match self {
