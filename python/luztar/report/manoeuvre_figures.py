@@ -157,7 +157,7 @@ def table(result: Robustness) -> Any:
     finite = np.isfinite(result.criterion)
     with np.errstate(divide="ignore"):
         shade = np.where(finite, np.log10(np.where(finite, result.criterion, 1.0)), np.nan)
-    texts = [[f"{v:.4g}" if np.isfinite(v) else "\u221e" for v in row] for row in result.criterion]
+    texts = [[f"{v:.4g}" if np.isfinite(v) else "" for v in row] for row in result.criterion]
     picture.add_heatmap(
         x=names,
         y=names,
