@@ -100,6 +100,19 @@ def test_results_are_json_and_print_themselves(by_angle):
     assert "most robust" in str(by_angle) and "<table>" in by_angle._repr_html_()
 
 
+def test_where_nothing_is_within_the_limits_every_study_says_so(tmp_path):
+    short = {**PLAIN, "length_m": 20.0}
+    task = manoeuvre("avoiding", **short)
+    table = robust(task, freeplay_half_width_rad=[0.0], friction_nm=[0.0], fine=(1, 1), effort="quick")
+    assert "none: every signal breaks the limits" in str(table) and table.spread()["freeplay"] is None
+    found = sensitivity(task, signal=table.signals[0], samples=64, ranges={"freeplay.gap_rad": (0.0, 0.1)})
+    assert found.feasible == 0 and found.on_feasibility is None and found.on_criterion is None
+    assert found.on_rank is not None and "none; all drives are alike" in str(found)
+    for number, result in enumerate((table, found)):
+        json.dumps(result.to_dict(), allow_nan=False)
+        result.report(tmp_path / f"{number}.html")
+
+
 # --- studies that go on ---
 
 

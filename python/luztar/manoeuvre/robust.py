@@ -168,13 +168,23 @@ class Robustness(Printed):
         for name, line, share in zip(names, self.criterion, self.infeasible_share, strict=True):
             cells = [f"{v:.4g}" if np.isfinite(v) else "inf" for v in line]
             rows.append(("", " ".join(f"{c:>10}" for c in [name, *cells, f"{100 * share:.0f} %"])))
-        z, f = self.pairs[self.most_robust]
-        cars = self.fine_criterion[0].size
-        rows.append(("most robust", f"the signal for z0 = {z:g} rad, {f:g} Nm (of {cars} cars on the finer grid)"))
+        rows.append(("most robust", self.verdict()))
         for name, value in self.spread().items():
-            text = "more than can be said (infinite)" if value is None else f"{100 * value:.2f} %"
-            rows.append((f"over {name}", f"J_w of the optima grows by {text}"))
+            text = "cannot be told: an optimum is infinite" if value is None else f"grows by {100 * value:.2f} %"
+            rows.append((f"over {name}", f"J_w of the optima {text}"))
         return rows
+
+    def verdict(self) -> str:
+        """Return in words which signal is the most robust."""
+        cars = self.fine_criterion[0].size
+        share = float(self.infeasible_share[self.most_robust])
+        if share == 1.0:
+            return f"none: every signal breaks the limits on all {cars} cars of the finer grid"
+        z, f = self.pairs[self.most_robust]
+        return (
+            f"the signal optimised for z0 = {z:g} rad and {f:g} Nm; it fails on {100 * share:.1f} % of the {cars} cars "
+            "of the finer grid"
+        )
 
 
 def _finite(value: float) -> float | None:

@@ -115,14 +115,14 @@ class Sensitivity(Printed):
         rows.append(
             ("drives", f"{self.drives}, of them {self.feasible} ({share:.1f} %) within the limits; none dropped")
         )
-        titles = {
-            "feasibility": ("whether the limits hold", self.on_feasibility),
-            "criterion": ("ln J_w where it is finite", self.on_criterion),
-            "rank": ("rank among all drives", self.on_rank),
-        }
-        for _, (title, found) in titles.items():
+        outputs = (
+            ("whether the limits hold", self.on_feasibility),
+            ("ln J_w where it is finite", self.on_criterion),
+            ("rank among all drives", self.on_rank),
+        )
+        for title, found in outputs:
             if found is None:
-                rows.append((title[:16], "no index: all drives are alike, or too few are within the limits"))
+                rows.append(("indices of", f"{title}: none; all drives are alike, or too few are within the limits"))
                 continue
             rows.append(("indices of", f"{title} (rows used: {found.rows}; 95 % intervals)"))
             order = sorted(found.first, key=lambda k: -(found.total or found.first)[k].value)

@@ -48,12 +48,8 @@ def write_optimum(path: str | os.PathLike[str], result: Optimum) -> None:
 
 def write_robustness(path: str | os.PathLike[str], result: Robustness) -> None:
     """Write a table of signals on cars, difference signals and the finer grid."""
-    z, f = result.pairs[result.most_robust]
-    share = result.infeasible_share[result.most_robust]
-    sentence = (
-        f"Most robust: the signal optimised for a half freeplay of {z:g} rad and {f:g} Nm of friction; "
-        f"it fails on {100 * share:.0f} % of the finer grid of cars."
-    )
+    sentence = f"Most robust: {result.verdict()}."
+    good = bool(result.infeasible_share[result.most_robust] < 1.0)
     shown: list[Shown] = [
         (
             "table",
@@ -80,7 +76,7 @@ def write_robustness(path: str | os.PathLike[str], result: Robustness) -> None:
             lambda: manoeuvre_figures.fine(result, result.most_robust),
         ),
     ]
-    _write(path, result, "Double lane change: freeplay, friction and the optimal signal", sentence, True, shown)
+    _write(path, result, "Double lane change: freeplay, friction and the optimal signal", sentence, good, shown)
 
 
 def write_map(path: str | os.PathLike[str], result: SignalMap) -> None:
