@@ -111,6 +111,15 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
     assert done.code == 3 and "none.toml" in done.json["error"]["where"]
 
 
+def test_weights_may_come_from_a_table_beside_the_study(study, tmp_path):
+    from luztar.manoeuvre import load
+
+    row = "[[weights]]\nspeed_m_s = {}\ncalm_s2_per_rad2 = {}\nprecision_m2 = 1.0\ncomfort_s4_per_m2 = 0.0\n"
+    (tmp_path / "w.toml").write_text("schema = 1\n" + row.format(10.0, 1.0) + row.format(20.0, 3.0))
+    study.write_text(STUDY + '[weights]\ntable = "w.toml"\n')
+    assert load(study).task().weights.calm_s2_per_rad2 == pytest.approx(2.0)
+
+
 @pytest.mark.parametrize("name", ["avoiding", "overtaking"])
 def test_the_examples_are_studies(name):
     from luztar.manoeuvre import load

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..errors import LuztarError, ModelError
+from .._arrays import number
+from ..errors import LuztarError, ModelError, ParameterError
 from ..vehicle import Car
 from .task import Manoeuvre, manoeuvre
-from .weights import KEYS, Weights
+from .weights import KEYS, Weights, weights_at
 
 SCHEMA = 1
 # Section: the keys that it may hold.
@@ -19,7 +20,7 @@ TOP = ("schema", "manoeuvre", "length_m", "speed_m_s", "car", "form", "steer", "
 SECTIONS = {
     "track": None,
     "vary": None,
-    "weights": KEYS,
+    "weights": (*KEYS, "table"),
     "search": ("seed", "effort"),
     "robust": ("freeplay_half_width_rad", "friction_nm", "fine"),
     "map": ("lengths_m", "speeds_m_s"),
@@ -54,7 +55,7 @@ class Study:
 
 
 def load(path: str | Path, **others: Any) -> Study:
-    """Read a study file.
+    """Read a study file; see ``examples/avoiding.toml``.
 
     Parameters
     ----------
@@ -95,7 +96,7 @@ def load(path: str | Path, **others: Any) -> Study:
         if str(options.get("car", "")).endswith(".toml"):
             options["car"] = Car.load(Path(path).parent / options["car"])
         if "weights" in read:
-            options["weights"] = Weights(**read["weights"])
+            options["weights"] = _weights(read["weights"], Path(path).parent, options)
         study = Study(
             read["manoeuvre"],
             options,
@@ -108,6 +109,15 @@ def load(path: str | Path, **others: Any) -> Study:
         place = f"{where}, {problem.where}" if problem.where else where
         raise ModelError(problem.kind, place, problem.remedy) from None
     return study
+
+
+def _weights(given: Mapping[str, Any], folder: Path, options: Mapping[str, Any]) -> Weights:
+    """Three numbers, or those of a table at the study's speed."""
+    if "table" not in given:
+        return Weights(**given)
+    if len(given) > 1:
+        raise ParameterError("weights are a table or three numbers", "weights", "Leave one of the two out.")
+    return weights_at(number("speed_m_s", options.get("speed_m_s")), folder / str(given["table"]))
 
 
 def _flat(section: Mapping[str, Any]) -> dict[str, Any]:

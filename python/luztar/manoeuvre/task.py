@@ -19,7 +19,7 @@ from .track import Track, named
 from .weights import Weights, weights_at
 
 STEERS = ("angle", "torque")
-# Half of what the springs of the built-in cars allow, and their criterion agrees with a fifth of it to 1e-4.
+# J_w of a drive agrees with a fifth of it to 1e-4 (tests/test_manoeuvre_criterion.py).
 STEP_S = 0.005
 # The gain is read off a small constant input after this time.
 SETTLED_S = 6.0
