@@ -42,7 +42,7 @@ def test_the_single_track_car_drives_as_theirs(amplitude):
 @pytest.mark.parametrize("amplitude", [0.2, 0.8])
 def test_the_car_of_twelve_degrees_drives_nearly_as_their_multi_body_car(amplitude):
     ours, theirs = both(amplitude, "twelve", "magic_formula")
-    # Another make-up: lateral compliance between body and axles (which lets the roll ring on), camber, and nothing keeps
-    # the speed. Measured 1.2 % in yaw rate; 4 % (large) and 7 % (small amplitude) in roll.
+    # Another make-up: lateral compliance between body and axles (which lets the roll ring on), camber, and nothing
+    # keeps the speed. Measured 1.2 % in yaw rate; 4 % (large) and 7 % (small amplitude) in roll.
     assert apart(ours.yaw_rate_rad_s[::10], theirs["yaw_rate_rad_s"]) < 0.02
     assert apart(ours.roll_rad[::10], theirs["roll_rad"]) < 0.1

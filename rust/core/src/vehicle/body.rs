@@ -49,6 +49,16 @@ pub(super) struct Posture {
     pub loads: [Pure; 4],
 }
 
+impl Posture {
+    /// The least of the loads.
+    #[inline(always)]
+    pub fn least_load(&self) -> Pure {
+        let lesser = |a: Pure, b: Pure| a.when(a.0 < b.0, b);
+        let [a, b, c, d] = self.loads;
+        lesser(lesser(a, b), lesser(c, d))
+    }
+}
+
 /// A car model of `S` states; the first two are lateral speed (m/s) and yaw rate (rad/s).
 pub(super) trait Body<const S: usize> {
     /// Rates at one instant.

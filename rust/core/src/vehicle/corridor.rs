@@ -8,7 +8,10 @@ use crate::Error;
 use crate::dynamics::Pure;
 use crate::effects::Lane;
 
+use super::columns::Views;
+use super::fleet::Fleet;
 use super::parameters::out;
+use super::summary::Tally;
 
 /// Numbers of a section: from and to (x), right edge at both, left edge at both (y), all in m.
 pub const SECTION: usize = 6;
@@ -81,7 +84,7 @@ impl<'a> Corridor<'a> {
 
 /// Outline and place of a car in the plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Outline {
+struct Outline {
     /// Reference point, m.
     pub x: Pure,
     /// See `x`.
@@ -103,9 +106,62 @@ const LEAST_COS: f64 = 0.1;
 /// Clearance where no section is reached.
 pub(super) const FREE: f64 = f64::INFINITY;
 
+/// The corridor of a block of lanes, and the cars' outlines.
+pub(super) struct Course<const N: usize> {
+    sections: Vec<[[f64; N]; SECTION]>,
+    front: [f64; N],
+    rear: [f64; N],
+    half_width: [f64; N],
+}
+
+impl<const N: usize> Course<N> {
+    /// Of these lanes.
+    pub fn of(fleet: &Fleet<'_>, of: [usize; N]) -> Self {
+        Self {
+            sections: fleet.corridor.map_or_else(Vec::new, |c| c.lay_out(of)),
+            front: of.map(|lane| fleet.cars[lane].front_end),
+            rear: of.map(|lane| fleet.cars[lane].rear_end),
+            half_width: of.map(|lane| 0.5 * fleet.cars[lane].width),
+        }
+    }
+
+    /// Compares every car with every section, in the middle of a step.
+    #[inline(always)]
+    pub fn measure(&self, seen: &Views<N>, tally: &mut Tally<N>) {
+        if self.sections.is_empty() {
+            return;
+        }
+        let mut least = [FREE; N];
+        for section in &self.sections {
+            for lane in 0..N {
+                let outline = Outline {
+                    x: Pure(seen.x[lane]),
+                    y: Pure(seen.y[lane]),
+                    sin: Pure(seen.sin[lane]),
+                    cos: Pure(seen.cos[lane]),
+                    front: Pure(self.front[lane]),
+                    rear: Pure(self.rear[lane]),
+                    half_width: Pure(self.half_width[lane]),
+                };
+                let (left, right) = clearance(section, lane, &outline);
+                let counts = seen.weight[lane] > 0.0;
+                let lesser =
+                    |kept: f64, value: Pure| value.when(counts & (value.0 < kept), Pure(kept)).0;
+                tally.left[lane] = lesser(tally.left[lane], left);
+                tally.right[lane] = lesser(tally.right[lane], right);
+                least[lane] = lesser(lesser(least[lane], left), right);
+            }
+        }
+        for lane in 0..N {
+            let over = Pure(-least[lane]).when(least[lane] < 0.0, Pure::ZERO);
+            tally.outside[lane] += (over * Pure(seen.weight[lane])).0;
+        }
+    }
+}
+
 /// The least distance of the left and of the right side from the edges of one section; [`FREE`] outside it.
 #[inline(always)]
-pub(super) fn clearance<const N: usize>(
+fn clearance<const N: usize>(
     section: &[[f64; N]; SECTION],
     lane: usize,
     car: &Outline,

@@ -118,6 +118,8 @@ fn square(x: f64) -> f64 {
 
 impl Prepared {
     /// The lane of a car with a step of `h` seconds.
+    // A list: one line per number.
+    #[allow(clippy::too_many_lines)]
     pub fn of(car: &Parameters, h: f64) -> Self {
         let base = car.front_axle + car.rear_axle;
         let weight = car.mass * GRAVITY;

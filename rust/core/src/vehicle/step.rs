@@ -10,6 +10,7 @@ use crate::projections::luz;
 use super::angle::{cos, sin};
 use super::body::{Body, Moment, Posture};
 use super::prepared::Prepared;
+use super::start::Start;
 use super::turn::{Pull, turn};
 use super::tyre::Tyre;
 
@@ -250,6 +251,21 @@ pub(super) fn step<const S: usize, const RICH: bool, const TORQUE: bool, B: Body
 }
 
 impl<const S: usize> State<S> {
+    /// At the start; the rear wheels stand at their share of the front angle.
+    pub fn begin<B: Body<S>>(start: &Start, rear_steer: f64) -> Self {
+        Self {
+            car: B::start(start),
+            x: Pure(start.x),
+            y: Pure(start.y),
+            yaw: Pure(start.yaw),
+            phi: Pure(start.roadwheel),
+            phi_speed: Pure(start.roadwheel_speed),
+            psi: Pure(start.handwheel),
+            psi_speed: Pure(start.handwheel_speed),
+            rear: Pure(rear_steer * start.roadwheel),
+        }
+    }
+
     /// This state, or the other where the condition holds.
     #[inline(always)]
     pub fn unless(&self, condition: bool, other: &Self) -> Self {

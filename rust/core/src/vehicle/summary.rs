@@ -3,6 +3,8 @@
 use crate::dynamics::Pure;
 use crate::effects::Lane;
 
+use super::step::State;
+
 /// How many numbers are kept of a run.
 pub const KEPT: usize = 21;
 
@@ -71,6 +73,8 @@ pub(super) struct Shown {
     pub column: Pure,
     /// Least load of a wheel.
     pub load: Pure,
+    /// Speed of the handwheel.
+    pub turning: Pure,
 }
 
 impl<const N: usize> Tally<N> {
@@ -112,7 +116,43 @@ impl<const N: usize> Tally<N> {
         most(&mut self.column[lane], shown.column);
         let least = self.load[lane];
         self.load[lane] = shown.load.when(shown.load.0 < least, Pure(least)).0;
+        self.rate_square[lane] += (weight * shown.turning * shown.turning).0;
         self.side_square[lane] += (weight * shown.side * shown.side).0;
         self.rest[lane] += weight.when(shown.roadwheel_speed.0 == 0.0, Pure::ZERO).0;
+    }
+
+    /// Writes what is kept of a lane; `squares` is the integral of the square of the handwheel's rate over its time.
+    pub fn finish<const S: usize>(
+        &self,
+        lane: usize,
+        time_s: f64,
+        squares: f64,
+        end: &State<S>,
+        kept: &mut [f64],
+    ) {
+        let per = if time_s > 0.0 { 1.0 / time_s } else { 0.0 };
+        kept.copy_from_slice(&[
+            squares * per,
+            self.side[lane],
+            self.side_square[lane] * per,
+            self.left[lane],
+            self.right[lane],
+            self.outside[lane],
+            self.yaw_rate[lane],
+            self.sideslip[lane],
+            self.roll[lane],
+            self.handwheel[lane],
+            self.roadwheel[lane],
+            self.column[lane],
+            self.rest[lane] * per,
+            self.load[lane],
+            self.spun[lane],
+            end.x.0,
+            end.y.0,
+            end.yaw.0,
+            end.car[0].0,
+            end.car[1].0,
+            end.phi.0,
+        ]);
     }
 }
