@@ -12,29 +12,12 @@ from scipy.interpolate import CubicSpline
 
 from luztar.dynamics import simulate, trace
 
+from .one_mass_cases import body
+
 # A step that fits no period below.
 ODD = 1.0137
 # Second order, less what the incommensurate grid scatters.
 LEAST_ORDER = 1.9
-
-
-def body(**parameters: float) -> dict[str, float]:
-    """One mass with the handwheel as the end of its spring (ratio 1)."""
-    names = {
-        "inertia": "steering.inertia_kg_m2",
-        "ratio": "steering.ratio",
-        "stiffness": "steering.stiffness_nm_per_rad",
-        "aligning": "steering.aligning_nm_per_rad",
-        "gap": "freeplay.gap_rad",
-        "viscous": "viscous.coefficient_nm_s_per_rad",
-        "coulomb": "coulomb.level_nm",
-        "stiction": "stiction.extra_nm",
-        "drag": "drag.coefficient_nm_s2_per_rad2",
-        "stribeck": "stribeck.extra_nm",
-        "stribeck_speed": "stribeck.speed_rad_s",
-    }
-    given = {"inertia": 1.0, "ratio": 1.0, "stiffness": 0.0, **parameters}
-    return {names[k]: v for k, v in given.items()}
 
 
 def still(seconds: float, step: float) -> np.ndarray:

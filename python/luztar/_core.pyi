@@ -39,8 +39,11 @@ __all__ = [
     "normal_equations",
     "project",
     "rolling",
+    "sampled_cubics",
     "simulate_steering",
     "solve_block",
+    "solve_bodies_exactly",
+    "solve_steering_exactly",
     "steering_parameters",
     "steering_summary_names",
     "summarise_steering",
@@ -473,6 +476,32 @@ def trace_steering(
     substeps: int,
     method: str,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[float, str, float]], list[tuple[str, float]]]: ...
+
+_Signal = tuple[_Floats, _Floats, _Floats]
+_Exact = tuple[_Floats, _Floats, list[tuple[float, str, int, int, float]]]
+
+def sampled_cubics(values: NDArray[np.float64], sample_rate_hz: float) -> NDArray[np.float64]: ...
+def solve_steering_exactly(
+    parameters: NDArray[np.float64],
+    start: tuple[float, float],
+    handwheel: _Signal,
+    load: _Signal,
+    *,
+    ground_speed: float,
+    times_s: NDArray[np.float64],
+    most_events: int,
+) -> _Exact: ...
+def solve_bodies_exactly(
+    bodies: NDArray[np.float64],
+    loads: Sequence[_Signal],
+    stiffness: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    springs: Sequence[tuple[float, float, NDArray[np.float64], _Signal]],
+    starts: Sequence[tuple[float, float]],
+    *,
+    times_s: NDArray[np.float64],
+    most_events: int,
+) -> _Exact: ...
 
 # projections
 

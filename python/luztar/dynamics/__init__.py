@@ -7,8 +7,15 @@ chatters.
 
 from .batch import simulate as simulate
 from .batch import summarise as summarise
+from .bodies import ExactBodies as ExactBodies
+from .bodies import GapSpring as GapSpring
+from .bodies import exact_bodies as exact_bodies
+from .exact import Exact as Exact
+from .exact import ExactEvent as ExactEvent
+from .exact import exact as exact
 from .lanes import COLUMNS as COLUMNS
 from .lanes import METHODS as METHODS
+from .signal import Signal as Signal
 from .trace import trace as trace
 from .trajectory import Event as Event
 from .trajectory import Trace as Trace

@@ -23,7 +23,7 @@ impl From<CoreError> for PyErr {
 /// What is wrong, where, and what to do: the three parts every error of the Python side has.
 fn parts(error: luztar::Error) -> (String, String, String) {
     use luztar::Error::{
-        Length, NonFinite, OutOfRange, Singular, Unknown, Unlike, Unrepresentable,
+        Length, NonFinite, OutOfRange, Singular, TooMany, Unknown, Unlike, Unrepresentable,
     };
     match error {
         NonFinite { name, index, value } => (
@@ -58,6 +58,11 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             format!("{what} cannot be merged"),
             "merge".to_owned(),
             "Make both with the same settings.".to_owned(),
+        ),
+        TooMany { what, most, time_s } => (
+            format!("more than {most} {what} until {time_s} s"),
+            what.to_owned(),
+            format!("Allow for more {what}, or shorten the run."),
         ),
         Unrepresentable { name } => (
             format!("{name} is too large or too small to be a number"),

@@ -7,6 +7,7 @@ mod driven;
 mod dynamics;
 mod effects;
 mod error;
+mod oracle;
 mod projections;
 mod regression;
 mod signal;
@@ -29,6 +30,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::oracle::{sampled_cubics, solve_bodies_exactly, solve_steering_exactly};
     #[pymodule_export]
     use crate::projections::project;
     #[pymodule_export]

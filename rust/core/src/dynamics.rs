@@ -18,6 +18,7 @@ mod ledger;
 mod moreau;
 mod number;
 mod one_mass;
+pub mod oracle;
 mod split;
 mod trace;
 

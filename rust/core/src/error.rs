@@ -53,6 +53,16 @@ pub enum Error {
         /// The two, in words.
         what: &'static str,
     },
+    /// More of something than was allowed for.
+    #[error("more than {most} {what} until {time_s} s; allow for more or shorten the run")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many were allowed.
+        most: usize,
+        /// When there were more.
+        time_s: f64,
+    },
     /// A result beyond the range of a double.
     #[error("{name} is too large or too small to be a number; choose other units for the data")]
     Unrepresentable {
