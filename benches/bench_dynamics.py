@@ -1,158 +1,151 @@
-"""How fast free runs are: `PYTHONPATH=tests python benches/bench_dynamics.py`.
+"""How fast free runs are: `python -m benches.bench_dynamics [--quick] [--million]`.
 
-Lane-steps per second of both kernels with every instruction set, the same split step as a numba loop over all cores
-(where numba is installed), and a general solver with events at about the same error. Kernels and peer take turns in one
-run; the medians of the rounds are printed, per second of wall time and per second of processor time, which is what
-counts on a machine that does other work as well.
+One interleaved run of lane-steps per second of both kernels with every instruction set, of the same split step as a
+numba loop over all cores, of MuJoCo's joint with friction loss, and of trajectories by SciPy's events. Printed are
+medians of the rounds, per second of wall time and per second of processor time, which is what counts on a machine that
+does other work as well. Errors against cost: `python -m benches.work_precision`. `--million` runs 10^6 trajectories of
+8 s and prints time and peak memory, and how long an interrupt takes to be answered. numba and MuJoCo are left out where
+they are not installed.
 """
 
 from __future__ import annotations
 
-import math
+import _thread
+import argparse
+import os
 import statistics
+import subprocess
+import sys
+import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from generators.steering import Hand, Mechanism
-from generators.steering import simulate as solve_with_events
-from luztar.dynamics import simulate
+from benches.work_precision import mujoco_joint, numba_loops, scipy_events
+from benches.work_precision.problems import DECAY, STEERING
+from luztar.dynamics import Normal, Uniform, sample, summarise
+from luztar.errors import Interrupted
 
-ROUNDS = 7
+ROUNDS, QUICK_ROUNDS = 9, 3
 LANES = 256
-RATE_HZ = 1_000.0
-# Steps of 0.1 ms of which every tenth is kept: what is measured is the step, not the memory.
+STEP_S = 1e-4
+# Every tenth step is a sample; a few numbers of each lane are kept: what is measured is the step, not the memory.
 SUBSTEPS = 10
-SECONDS = 2.0
+WIDTHS = ("baseline", "avx2", "avx512")
+MILLION, MILLION_SECONDS, MILLION_STEP_S = 1_000_000, 8.0, 1e-3
 
 
-def mechanisms() -> dict[str, np.ndarray | float]:
-    """Return one mechanism per lane, dry friction spread over them."""
-    return {
-        "steering.inertia_kg_m2": 3.0,
-        "steering.ratio": 16.0,
-        "steering.stiffness_nm_per_rad": 60.0,
-        "freeplay.gap_rad": 0.1,
-        "viscous.coefficient_nm_s_per_rad": 40.0,
-        "coulomb.level_nm": np.linspace(4.0, 12.0, LANES),
-        "stiction.extra_nm": 3.9,
-    }
-
-
-def numba_step() -> Callable[[np.ndarray, np.ndarray, np.ndarray], None] | None:
-    """Return the split step as one would write it by hand, or None without numba."""
-    try:
-        import numba
-    except ImportError:
-        return None
-
-    @numba.njit(inline="always")
-    def torque(psi: float, q: float) -> float:
-        z = psi - 16.0 * q
-        return 16.0 * 60.0 * (z - min(max(z, -0.05), 0.05))
-
-    @numba.njit(parallel=True)
-    def run(psi: np.ndarray, levels: np.ndarray, out: np.ndarray) -> None:
-        inertia, mu, extra, h = 3.0, 40.0, 3.9, 1.0 / (RATE_HZ * SUBSTEPS)
-        k = h * mu / (2.0 * inertia)
-        for lane in numba.prange(levels.size):
-            kinetic, q, v = levels[lane], 0.0, 0.0
-            static = kinetic + extra
-            out[lane, 0] = 0.0
-            for i in range(psi.size - 1):
-                a, b = psi[i], psi[i + 1]
-                middle = q + h * v / 2.0
-                s = (v > 0.0) - (v < 0.0)
-                v1 = (v * (1.0 - k) + h * (torque(0.5 * (a + b), middle) - kinetic * s) / inertia) / (1.0 + k)
-                if v1 * v > 0.0:
-                    q, v = middle + h * v1 / 2.0, v1
-                else:
-                    share = v / (v - v1) if v != 0.0 else 0.0
-                    q += share * h * v / 2.0
-                    m0, m1 = torque(a + share * (b - a), q), torque(b, q)
-                    if abs(m0) > static:
-                        stuck, way = 0.0, m0
-                    elif abs(m1) > abs(m0):
-                        stuck, way = min(max((static - abs(m0)) / (abs(m1) - abs(m0)), 0.0), 1.0), m1
-                    else:
-                        stuck, way = 1.0, m1
-                    left = (1.0 - share) * (1.0 - stuck) * h
-                    mean = (m0 + (m1 - m0) * stuck + m1) / 2.0 - math.copysign(kinetic, way)
-                    v = left * mean / inertia / (1.0 + left * mu / (2.0 * inertia))
-                    if v * way <= 0.0:
-                        v = 0.0
-                    q += left * v / 2.0
-                if (i + 1) % SUBSTEPS == 0:
-                    out[lane, (i + 1) // SUBSTEPS] = q
-
-    return run
-
-
-def main() -> None:
-    """Print one line per way."""
-    times = np.arange(round(SECONDS * RATE_HZ) + 1) / RATE_HZ
-    psi = np.sin(2.0 * math.pi * 0.5 * times)
-    given = mechanisms()
-    ways: dict[str, Callable[[], object]] = {}
+def ways() -> tuple[dict[str, Callable[[], object]], dict[str, int]]:
+    """Return the calls and how many lane-steps each makes."""
+    p = STEERING
+    levels = np.linspace(4.0, 12.0, LANES)
+    given = {**p.parameters, p.varied: levels}
+    psi = p.handwheel_rad(STEP_S * SUBSTEPS)
+    steps = round(p.seconds / STEP_S)
+    made: dict[str, Callable[[], object]] = {}
+    counts: dict[str, int] = {}
     for method in ("split", "moreau_jean"):
-        for width in ("baseline", "avx2", "avx512"):
-            ways[f"{method}, {width}"] = lambda m=method, w=width: simulate(
-                given, psi, sample_rate_hz=RATE_HZ, substeps=SUBSTEPS, method=m, width=w
+        for width in WIDTHS:
+            made[f"{method}, {width}"] = lambda m=method, w=width: summarise(
+                given, psi, sample_rate_hz=1.0 / (STEP_S * SUBSTEPS), substeps=SUBSTEPS, method=m, width=w, keep="last"
             )
-    peer = numba_step()
-    if peer is None:
-        print("numba is not installed: without the hand-written loop")
+    loop = numba_loops.split_loop()
+    if loop is None:
+        print("numba is not installed: without the loop by hand")
     else:
-        levels, out = np.asarray(given["coulomb.level_nm"]), np.empty((LANES, psi.size))
-        fine = np.sin(math.pi * np.arange((psi.size - 1) * SUBSTEPS + 1) / (RATE_HZ * SUBSTEPS))
-        ways["split, numba parallel"] = lambda: peer(fine, levels, out)
-    wall: dict[str, list[float]] = {name: [] for name in ways}
-    busy: dict[str, list[float]] = {name: [] for name in ways}
-    for call in ways.values():
+        out = np.empty((LANES, psi.size))
+        fine, constants = numba_loops.half_steps(p, STEP_S), numba_loops.constants(p)
+        made["split, numba parallel"] = lambda: loop(constants, levels, 0.0, fine, STEP_S, SUBSTEPS, out)
+    counts |= dict.fromkeys(made, LANES * steps)
+    if mujoco_joint.available():
+        short = replace(DECAY, seconds=1.0)
+        made["MuJoCo, free decay"] = mujoco_joint.joint(short, STEP_S, tuned=True)
+        counts["MuJoCo, free decay"] = round(short.seconds / STEP_S)
+    else:
+        print("MuJoCo is not installed: without its joint")
+    return made, counts
+
+
+def speeds(rounds: int) -> None:
+    """Print one line per way."""
+    made, counts = ways()
+    made["scipy DOP853, 1e-8"] = lambda: scipy_events.run(STEERING, "DOP853", 1e-8)
+    wall: dict[str, list[float]] = {name: [] for name in made}
+    busy: dict[str, list[float]] = {name: [] for name in made}
+    for call in made.values():
         call()
-    for _ in range(ROUNDS):
-        for name, call in ways.items():
+    for _ in range(rounds):
+        for name, call in made.items():
             started, worked = time.perf_counter(), time.process_time()
             call()
             wall[name].append(time.perf_counter() - started)
             busy[name].append(time.process_time() - worked)
-    steps = LANES * (psi.size - 1) * SUBSTEPS
-    print(f"{LANES} lanes, {(psi.size - 1) * SUBSTEPS} steps, every tenth kept; 10^6 lane-steps/s, medians of {ROUNDS}")
+    print(f"{LANES} lanes, steps of {STEP_S:g} s; 10^6 lane-steps/s, medians of {rounds}")
     print(f"{'':<24}{'wall':>10}{'processor':>12}")
-    for name in ways:
-        shown = [steps / statistics.median(s[name]) / 1e6 for s in (wall, busy)]
-        print(f"{name:<24}{shown[0]:>10.0f}{shown[1]:>12.0f}")
-    if peer is not None:
-        ratio = statistics.median(
-            p / w for p, w in zip(wall["split, numba parallel"], wall["split, avx512"], strict=True)
-        )
-        print(f"numba over luztar (widest), wall, median of ratios: {ratio:.1f}")
-    _against_events(times, psi)
+    for name, count in counts.items():
+        shown = [count / statistics.median(s[name]) / 1e6 for s in (wall, busy)]
+        print(f"{name:<24}{shown[0]:>10.3g}{shown[1]:>12.3g}")
+    if "split, numba parallel" in made:
+        for kind, taken in (("wall", wall), ("processor", busy)):
+            pairs = zip(taken["split, numba parallel"], taken["split, avx512"], strict=True)
+            print(f"numba over luztar, {kind}, median of ratios: {statistics.median(a / b for a, b in pairs):.1f}")
+    error = STEERING.error_rad(scipy_events.run(STEERING, "DOP853", 1e-8))
+    each = 1e3 * statistics.median(busy["scipy DOP853, 1e-8"]) / STEERING.seconds
+    print(f"scipy DOP853 with events, 1e-8: {each:.2f} ms per simulated s, error {error:.1e} rad")
 
 
-def _against_events(times: np.ndarray, psi: np.ndarray) -> None:
-    """One lane against scipy's events: seconds of wall time per simulated second, at the errors shown."""
-    m = Mechanism(3.0, 16.0, 60.0, 0.0, 40.0, 0.05, 8.1, 12.0)
-    hand = Hand((1.0,), (0.5,), ramp_s=1e-9)
-    fine = simulate({**mechanisms(), "coulomb.level_nm": 8.1}, psi, sample_rate_hz=RATE_HZ, substeps=2000).roadwheel_rad
-    started = time.perf_counter()
-    solved = solve_with_events(m, hand, times, tolerance=1e-8)
-    slow = time.perf_counter() - started
-    print(
-        f"solve_ivp with events: {1e3 * slow / SECONDS:.0f} ms per simulated s, error {np.abs(solved - fine).max():.1e}"
+def million(lanes: int) -> None:
+    """Run many trajectories and print time and peak memory of this process."""
+    import resource
+
+    psi = np.sin(np.pi * MILLION_STEP_S * np.arange(round(MILLION_SECONDS / MILLION_STEP_S) + 1))
+    drawn = sample(
+        {
+            **STEERING.parameters,
+            "coulomb.level_nm": Uniform(4.0, 12.0),
+            "stiction.extra_nm": Uniform(0.0, 4.0),
+            "freeplay.gap_rad": Normal(0.1, 0.03, low=0.0),
+        },
+        lanes,
+        seed=1,
     )
-    seconds = []
-    for _ in range(ROUNDS):
-        started = time.perf_counter()
-        many = simulate(mechanisms(), psi, sample_rate_hz=RATE_HZ)
-        seconds.append((time.perf_counter() - started) / LANES)
-    lane = int(np.argmin(np.abs(np.asarray(mechanisms()["coulomb.level_nm"]) - 8.1)))
-    parts = {k: (float(v[lane]) if isinstance(v, np.ndarray) else v) for k, v in mechanisms().items()}
-    exact = simulate(parts, psi, sample_rate_hz=RATE_HZ, substeps=2000).roadwheel_rad
-    error = np.abs(many.roadwheel_rad[lane] - exact).max()
-    each = statistics.median(seconds)
-    print(f"split at 1 ms, a lane of {LANES}: {1e3 * each / SECONDS:.4f} ms per simulated s, error {error:.1e}")
+    started, worked = time.perf_counter(), time.process_time()
+    made = summarise(drawn, psi, sample_rate_hz=1.0 / MILLION_STEP_S)
+    taken, busy = time.perf_counter() - started, time.process_time() - worked
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    print(f"{lanes} trajectories of {MILLION_SECONDS:g} s at {MILLION_STEP_S:g} s: {taken:.1f} s ({busy:.1f} s of all")
+    print(f"processors), peak memory of the process {peak:.0f} MiB; peak angle {np.median(made['peak_rad']):.4f} rad")
+    came: list[float] = []
+
+    def interrupt() -> None:
+        came.append(time.perf_counter())
+        _thread.interrupt_main()
+
+    threading.Timer(0.3 * taken, interrupt).start()
+    try:
+        summarise(drawn, psi, sample_rate_hz=1.0 / MILLION_STEP_S)
+    except Interrupted as stopped:
+        print(f"an interrupt was answered after {1e3 * (time.perf_counter() - came[0]):.0f} ms: {stopped}")
+
+
+def main() -> None:
+    """Print what was asked for."""
+    parser = argparse.ArgumentParser(prog="python -m benches.bench_dynamics", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="few rounds")
+    parser.add_argument("--million", action="store_true", help="10^6 trajectories too, in a process of their own")
+    parser.add_argument("--lanes", type=int, help="only that many trajectories, in this process")
+    options = parser.parse_args()
+    if options.lanes is not None:
+        million(options.lanes)
+        return
+    speeds(QUICK_ROUNDS if options.quick else ROUNDS)
+    if options.million:
+        # Memory is that of a fresh process.
+        subprocess.run([sys.executable, "-m", "benches.bench_dynamics", "--lanes", str(MILLION)], check=True)
 
 
 if __name__ == "__main__":

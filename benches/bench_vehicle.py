@@ -185,7 +185,8 @@ def main() -> None:
     per_car = timings["luztar"].median_s / CARS
     print(f"lateral_roll, brush, {CARS} cars of {SECONDS:g} s at {STEP_S:g} s: luztar {1e3 * per_car:.3f} ms a car")
     if peer is not None:
-        print(f"numba over luztar, median of ratios: {timings.ratio('numba', 'luztar'):.1f}")
+        cpu = timings["numba"].cpu_s / timings["luztar"].cpu_s
+        print(f"numba over luztar, median of ratios: {timings.ratio('numba', 'luztar'):.1f} (processor time {cpu:.1f})")
     _against_solver(car, options, per_car)
     for model in ("single_track", "lateral_roll", "twelve"):
         for tyre in ("linear", "brush", "magic_formula"):

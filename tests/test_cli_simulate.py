@@ -48,6 +48,19 @@ def test_the_handwheel_of_a_run_drives_the_model(model, tmp_path):
     assert done.out.startswith("hand.csv: 1 trajectory of 3.996 s") and "energy: handwheel" in done.out
 
 
+def test_a_page_shows_every_run(model, tmp_path):
+    t = np.arange(500) / 250
+    for name, size in (("<b>one", 1.0), ("two", 0.8)):
+        rows = np.column_stack([t, size * np.sin(2 * t)])
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header="time_s,handwheel_rad", comments="")
+    page = tmp_path / "page.html"
+    done = luztar("simulate", model, tmp_path / "<b>one.csv", tmp_path / "two.csv", "--report", page)
+    assert done.code == 0, done.err
+    text = page.read_text(encoding="utf-8")
+    assert text.count("plotly-graph-div") == 2 and "&lt;b&gt;one.csv" in text and "<b>one" not in text
+    assert luztar("simulate", model, "--sine", 1, 1, "--report", tmp_path).code == 3
+
+
 @pytest.mark.parametrize(
     ("words", "word"),
     [

@@ -44,8 +44,33 @@ def lanes(count: int) -> dict[str, np.ndarray]:
     return {key: chance.uniform(low, high, count) for key, (low, high) in spread.items()}
 
 
-def digest(count: int, **options: object) -> str:
-    run = simulate(lanes(count), psi(), sample_rate_hz=500, substeps=2, **options)
+def with_every_effect(count: int) -> dict[str, np.ndarray]:
+    chance = np.random.default_rng(8)
+    spread = {
+        "end_stop.stiffness_nm_per_rad": (0.0, 3000.0),
+        "end_stop.limit_rad": (0.03, 0.06),
+        "dead_zone.stiffness_nm_per_rad": (0.0, 300.0),
+        "dead_zone.half_width_rad": (0.0, 0.03),
+        "once_per_rev.amplitude_nm": (0.0, 0.3),
+        "once_per_rev.phase_rad": (-3.0, 3.0),
+        "twice_per_rev.amplitude_nm": (0.0, 0.3),
+        "twice_per_rev.phase_rad": (-3.0, 3.0),
+        "cogging.amplitude_nm": (0.0, 0.1),
+        "cogging.phase_rad": (-3.0, 3.0),
+        "cogging.per_turn": (3.0, 12.0),
+        "position_coulomb.slope_nm_per_rad": (-30.0, 30.0),
+        "tight_spot.extra_nm": (0.0, 3.0),
+        "tight_spot.angle_rad": (-0.05, 0.05),
+        "tight_spot.width_rad": (0.005, 0.02),
+        "load.coefficient": (0.0, 0.5),
+        "dwell.extra_nm": (0.0, 3.0),
+        "dwell.time_s": (0.05, 0.5),
+    }
+    return lanes(count) | {key: chance.uniform(low, high, count) for key, (low, high) in spread.items()}
+
+
+def digest(count: int, given=None, **options: object) -> str:
+    run = simulate(given or lanes(count), psi(), sample_rate_hz=500, substeps=2, **options)
     return hashlib.sha256(run.roadwheel_rad.tobytes() + run.speed_rad_s.tobytes()).hexdigest()
 
 
@@ -53,6 +78,32 @@ def digest(count: int, **options: object) -> str:
 def test_every_instruction_set_gives_the_same_bits(method):
     # One that the processor lacks gives way to the next below: the comparison then says less, but holds.
     assert len({digest(200, method=method, width=w) for w in ("baseline", "avx2", "avx512", "widest")}) == 1
+
+
+@pytest.mark.parametrize("method", ["split", "moreau_jean"])
+def test_every_instruction_set_gives_the_same_bits_with_every_effect(method):
+    load = 20.0 * np.sin(np.arange(psi().size) / 40.0)
+    given = with_every_effect(200)
+    widths = ("baseline", "avx2", "avx512", "widest")
+    assert len({digest(200, given, method=method, width=w, load_nm=load) for w in widths}) == 1
+    del given["stiction.extra_nm"], given["dwell.extra_nm"]
+    if method == "split":
+        given["presliding.breakaway_rad"] = np.random.default_rng(9).uniform(0.002, 0.02, 200)
+        given["presliding.shape"] = np.arange(200) % 2.0
+        assert len({digest(200, given, width=w, load_nm=load) for w in widths}) == 1
+
+
+def test_effects_that_a_lane_has_not_change_none_of_its_bits():
+    # A neighbour with every effect makes the step look at all of them for every lane.
+    plain = {k: np.zeros(2) if k.startswith(("drag", "asym", "stribeck", "hard")) else v for k, v in lanes(2).items()}
+    none = np.zeros(2)
+    mixed = {k: np.array([plain.get(k, none)[0], v[1]]) for k, v in with_every_effect(2).items()}
+    elastic = {**mixed, "presliding.breakaway_rad": np.array([0.0, 0.01])}
+    elastic["stiction.extra_nm"] = np.array([plain["stiction.extra_nm"][0], 0.0])
+    elastic["dwell.extra_nm"] = np.zeros(2)
+    runs = [simulate(p, psi(), sample_rate_hz=500, substeps=2).roadwheel_rad for p in (plain, mixed, elastic)]
+    assert np.array_equal(runs[0][0], runs[1][0]) and np.array_equal(runs[0][0], runs[2][0])
+    assert not np.array_equal(runs[0][1], runs[1][1])
 
 
 def test_every_number_of_threads_gives_the_same_bits(monkeypatch, request):
@@ -86,7 +137,8 @@ def test_a_lane_without_curved_friction_keeps_its_bits_beside_one_with_it():
 
 
 def test_a_summary_is_that_of_the_samples_whatever_the_chunks(monkeypatch):
-    monkeypatch.setattr("luztar.dynamics.batch.CHUNK", 77)
+    for name in ("LEAST_LANES", "MOST_LANES"):
+        monkeypatch.setattr(f"luztar.dynamics.batch_inputs.{name}", 77)
     told = []
     kept = summarise(
         lanes(200), psi(), sample_rate_hz=500, substeps=2, progress=lambda done, of: told.append((done, of))
@@ -99,4 +151,6 @@ def test_a_summary_is_that_of_the_samples_whatever_the_chunks(monkeypatch):
     # A sum of 1500 squares, each rounded once, in another order.
     rms = np.sqrt(np.mean(run.roadwheel_rad**2, axis=1))
     assert np.allclose(kept["rms_rad"], rms, rtol=1500 * np.finfo(float).eps, atol=0.0)
-    assert told == [(77, 200), (154, 200), (200, 200)]
+    # At the end of every chunk, and in between as often as time passes.
+    assert {(77, 200), (154, 200), (200, 200)} <= set(told)
+    assert [done for done, _ in told] == sorted({done for done, _ in told})

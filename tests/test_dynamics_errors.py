@@ -72,6 +72,11 @@ def test_a_step_too_large_for_the_spring_names_step_and_spring():
     simulate(SOUND, PSI, sample_rate_hz=1.0 / 0.03, substeps=4)
 
 
+def test_more_steps_than_memory_holds_are_refused_by_name():
+    with pytest.raises(ParameterError, match=r"substeps.*\[1, 671088\] for a record of 200 samples"):
+        trace(SOUND, PSI, sample_rate_hz=500, substeps=1_000_000)
+
+
 def test_a_trace_is_of_one_lane():
     with pytest.raises(ParameterError, match="several lanes"):
         trace({**SOUND, "coulomb.level_nm": [1.0, 2.0]}, PSI, sample_rate_hz=500)

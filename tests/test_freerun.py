@@ -138,7 +138,7 @@ def test_what_angles_cannot_show_must_be_given():
     with pytest.raises(ModelError, match="above 0"):
         luztar.Model.steering(ratio=0.0)
     with pytest.raises(ModelError, match="no effect of a steering model"):
-        luztar.Model.steering(ratio=16.0) + "once_per_rev"
+        luztar.Model.steering(ratio=16.0) + "warmup"
     with pytest.raises(ModelError, match="without a filter"):
         luztar.Model.steering(ratio=16.0).with_band(6.0)
 

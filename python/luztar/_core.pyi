@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, Self, TypedDict, final, type_check_only
 
 import numpy as np
@@ -24,6 +24,7 @@ __all__ = [
     "ZeroPhase",
     "__version__",
     "car_names",
+    "check_lanes",
     "drive_cars",
     "effect_cards",
     "even",
@@ -34,19 +35,20 @@ __all__ = [
     "held_out",
     "huber",
     "instruction_sets",
+    "lane_columns",
     "moments_by_label",
     "moments_by_window",
     "normal_equations",
     "project",
     "rolling",
+    "run_lanes",
     "sampled_cubics",
     "simulate_steering",
     "solve_block",
     "solve_bodies_exactly",
     "solve_steering_exactly",
+    "steering_highest_rad_s",
     "steering_parameters",
-    "steering_summary_names",
-    "summarise_steering",
     "theil_sen",
     "trace_steering",
 ]
@@ -440,6 +442,9 @@ def held_out(
 # dynamics
 
 def steering_parameters() -> list[str]: ...
+def steering_highest_rad_s(
+    parameters: NDArray[np.float64], wound_rad: float, first: int = 0
+) -> NDArray[np.float64]: ...
 def simulate_steering(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
@@ -453,8 +458,21 @@ def simulate_steering(
     phi: NDArray[np.float64],
     speed: NDArray[np.float64] | None,
 ) -> None: ...
-def steering_summary_names() -> list[str]: ...
-def summarise_steering(
+def lane_columns(
+    samples: int, events: bool, energy: bool, window: int, chosen: Sequence[int]
+) -> list[tuple[str, int]]: ...
+def check_lanes(
+    parameters: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    handwheel_rad: NDArray[np.float64],
+    load_nm: NDArray[np.float64] | None,
+    *,
+    sample_rate_hz: float,
+    substeps: int,
+    method: str,
+    first: int,
+) -> None: ...
+def run_lanes(
     parameters: NDArray[np.float64],
     starts: NDArray[np.float64],
     handwheel_rad: NDArray[np.float64],
@@ -464,7 +482,15 @@ def summarise_steering(
     substeps: int,
     method: str,
     width: str,
-    out: NDArray[np.float64],
+    events: bool,
+    energy: bool,
+    window: int,
+    chosen: Sequence[int],
+    rows: NDArray[np.float64],
+    done: NDArray[np.bool_],
+    phi: NDArray[np.float64] | None,
+    speed: NDArray[np.float64] | None,
+    told: Callable[[int], object] | None,
 ) -> None: ...
 def trace_steering(
     parameters: NDArray[np.float64],
@@ -475,7 +501,13 @@ def trace_steering(
     sample_rate_hz: float,
     substeps: int,
     method: str,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[float, str, float]], list[tuple[str, float]]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    list[tuple[float, str, float]],
+    list[tuple[str, float]],
+]: ...
 
 _Signal = tuple[_Floats, _Floats, _Floats]
 _Exact = tuple[_Floats, _Floats, list[tuple[float, str, int, int, float]]]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class LuztarError(Exception):
     """The base of every error luztar raises on purpose.
@@ -45,3 +47,25 @@ class ModelError(LuztarError, ValueError):
 
 class MissingError(LuztarError, ImportError):
     """An optional package that the call needs and that is not installed."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """An interrupt during a batch; what was finished by then is kept.
+
+    A ``KeyboardInterrupt``: it ends a program that does not ask for it.
+
+    Attributes
+    ----------
+    partial : object
+        The result of the lanes that are done, as the call would have returned it.
+    done : ndarray of int
+        Their numbers, increasing.
+    lanes : int
+        How many were asked for.
+    """
+
+    def __init__(self, partial: Any, done: Any, lanes: int) -> None:
+        self.partial = partial
+        self.done = done
+        self.lanes = lanes
+        super().__init__(f"stopped; {len(done)} of {lanes} lanes are done and kept in .partial")

@@ -35,21 +35,40 @@ class Mechanism:
     cubic: float = 0.0
     drag: float = 0.0
     asymmetric: float = 0.0
+    # Stiffness and angle of a stop, stiffness and half width of a dead zone, both at the road wheel.
+    end_stop: tuple[float, float] = (0.0, 0.0)
+    dead_zone: tuple[float, float] = (0.0, 0.0)
+    # Amplitude, phase and number of waves per turn of the pinion, felt `ratio` times at the road wheel.
+    waves: tuple[tuple[float, float, int], ...] = ()
+    # Kinetic and static friction per angle, and at a spot: extra, angle, standard deviation.
+    slope: float = 0.0
+    spot: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    # Growth of static friction after a long rest, and its time.
+    dwell: tuple[float, float] = (0.0, 1.0)
 
     def spring(self, psi: float, phi: float) -> float:
         """Torque on the road wheel."""
         z = psi - self.ratio * phi
         wound = z - min(max(z, -self.half_gap), self.half_gap)
-        return self.ratio * (self.stiffness * wound + self.cubic * wound**3) - self.aligning * phi
+        column = self.ratio * (self.stiffness * wound + self.cubic * wound**3)
+        beyond = sum(k * math.copysign(max(abs(phi) - w, 0.0), phi) for k, w in (self.end_stop, self.dead_zone))
+        turn = sum(a * math.sin(n * self.ratio * phi + phase) for a, phase, n in self.waves)
+        return column - self.aligning * phi - beyond - self.ratio * turn
 
-    def friction(self, speed: float, side: int) -> float:
+    def local(self, phi: float) -> float:
+        """Dry friction that an angle adds."""
+        extra, angle, width = self.spot
+        return self.slope * phi + extra * math.exp(-0.5 * ((phi - angle) / width) ** 2)
+
+    def friction(self, speed: float, side: int, phi: float) -> float:
         """Torque against the motion to one side."""
-        dry = self.kinetic + self.stribeck * math.exp(-((speed / self.stribeck_speed) ** 2))
+        dry = self.kinetic + self.local(phi) + self.stribeck * math.exp(-((speed / self.stribeck_speed) ** 2))
         return side * dry + self.asymmetric + self.viscous * speed + self.drag * speed * abs(speed)
 
-    def holds(self, torque: float) -> bool:
-        """Whether friction at rest holds a torque."""
-        level = max(self.static, self.kinetic) + self.stribeck
+    def holds(self, torque: float, phi: float, rest_s: float) -> bool:
+        """Whether friction at rest holds a torque after some seconds."""
+        grown = self.dwell[0] * (1.0 - math.exp(-rest_s / self.dwell[1]))
+        level = max(self.static, self.kinetic) + self.local(phi) + self.stribeck + grown
         return -level + self.asymmetric <= torque <= level + self.asymmetric
 
 
@@ -72,10 +91,10 @@ class Hand:
         return out * rise**2 * (3.0 - 2.0 * rise)
 
 
-def drawn_hand(chance: np.random.Generator) -> Hand:
+def drawn_hand(chance: np.random.Generator, size: float = 1.0) -> Hand:
     """A hand that turns to and fro between a tenth and one and a half hertz."""
     count = 7
-    amplitudes = chance.uniform(0.1, 0.35, count)
+    amplitudes = size * chance.uniform(0.1, 0.35, count)
     frequencies = chance.uniform(0.1, 1.5, count)
     return Hand(tuple(amplitudes), tuple(frequencies), tuple(chance.uniform(0.0, 2.0 * math.pi, count)))
 
@@ -92,7 +111,7 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
             # Stuck: the angle stays; the torque is scanned for the instant at which it is too much.
             grid = np.linspace(t, end, max(2, int((end - t) * SCANS_PER_S) + 1))
             torque = np.array([m.spring(float(hand(x)), phi) for x in grid])
-            lost = np.array([not m.holds(q) for q in torque])
+            lost = np.array([not m.holds(q, phi, x - t) for q, x in zip(torque, grid, strict=True)])
             if not lost.any():
                 out[inside] = phi
                 return out
@@ -100,7 +119,7 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
             low, high = (float(grid[max(k - 1, 0)]), float(grid[k]))
             for _ in range(60):
                 middle = 0.5 * (low + high)
-                if m.holds(m.spring(float(hand(middle)), phi)):
+                if m.holds(m.spring(float(hand(middle)), phi), phi, middle - t):
                     low = middle
                 else:
                     high = middle
@@ -111,7 +130,7 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
         side = mode
 
         def rate(x: float, y: np.ndarray, side: int = side) -> list[float]:
-            return [y[1], (m.spring(float(hand(x)), y[0]) - m.friction(y[1], side)) / m.inertia]
+            return [y[1], (m.spring(float(hand(x)), y[0]) - m.friction(y[1], side, y[0])) / m.inertia]
 
         def stops(x: float, y: np.ndarray, side: int = side) -> float:
             return side * y[1]
@@ -147,15 +166,21 @@ def simulate(m: Mechanism, hand: Hand, times: np.ndarray, *, tolerance: float = 
             return out
         t, phi, speed = float(solved.t_events[0][0]), float(solved.y_events[0][0][0]), 0.0
         torque = m.spring(float(hand(t)), phi)
-        mode = 0 if m.holds(torque) else (1 if torque > 0.0 else -1)
+        mode = 0 if m.holds(torque, phi, 0.0) else (1 if torque > 0.0 else -1)
 
 
 def steering_run(
-    m: Mechanism, chance: np.random.Generator, *, seconds: float = 15.0, rate_hz: float = 250.0, noise_rad: float = 5e-4
+    m: Mechanism,
+    chance: np.random.Generator,
+    *,
+    seconds: float = 15.0,
+    rate_hz: float = 250.0,
+    noise_rad: float = 5e-4,
+    size: float = 1.0,
 ) -> dict[str, np.ndarray]:
     """Return time, handwheel and road wheel of one run, the road wheel with white noise."""
     times = np.arange(round(seconds * rate_hz)) / rate_hz
-    hand = drawn_hand(chance)
+    hand = drawn_hand(chance, size)
     phi = simulate(m, hand, times, tolerance=RUN_TOLERANCE)
     return {
         "time": times,

@@ -303,19 +303,27 @@ def simulate(
         str | None,
         typer.Option("--out", metavar="F.csv", help="Write the trajectory; numbered where there are several."),
     ] = None,
+    monte_carlo: Annotated[
+        str | None,
+        typer.Option("--monte-carlo", metavar="STUDY.toml", help="Draw many mechanisms; --out is a row for each."),
+    ] = None,
     map: Map = [],  # noqa: B006
     unit: Unit = [],  # noqa: B006
     resample: Resample = None,
+    report: Annotated[
+        str | None, typer.Option("--report", metavar="F.html", help="Write an HTML page with pictures of every run.")
+    ] = None,
     json: Json = False,
     debug: Debug = False,
 ) -> int:
     """Run a steering model: handwheel in, road wheel out.
 
-    Prints the events (stick, slip, reversal, contact, release) and where the energy went.
+    Prints the events (stick, slip, reversal, contact, release) and where the energy went; with --monte-carlo, how what
+    was kept of many runs is spread.
     """
     from .simulate import run_simulate
 
-    return run_simulate(model, runs or [], sine, seconds, rate, out, json, map, unit, resample)
+    return run_simulate(model, runs or [], sine, seconds, rate, out, report, monte_carlo, json, map, unit, resample)
 
 
 @app.command()

@@ -13,6 +13,7 @@ from . import exits
 from .inputs import check_positive, find_model, read_runs
 from .output import say, tell
 from .progress import bar
+from .report import check_place, written
 
 
 def run_simulate(
@@ -22,6 +23,8 @@ def run_simulate(
     seconds: float,
     rate: float,
     out: str | None,
+    report: str | None,
+    study: str | None,
     json: bool,
     mapped: list[str],
     units: list[str],
@@ -30,6 +33,15 @@ def run_simulate(
     """Simulate a model along the handwheel of runs, or along a sine, and print what happened."""
     from ..freerun.run_model import parameters_given, run_model
 
+    check_place(report, [model, *runs])
+    if study is not None:
+        if report is not None:
+            raise ParameterError("a page shows single runs", "--report", "Give --out for the table of all lanes.")
+        from .monte_carlo import run_monte_carlo
+
+        drives = _drives(runs, sine, seconds, rate, mapped, units, resample)
+        place = _places(out, ["lanes"], [model, study, *runs])[0]
+        return run_monte_carlo(model, study, drives, place, json)
     start_from = find_model(model)
     given = parameters_given(start_from)
     drives = _drives(runs, sine, seconds, rate, mapped, units, resample)
@@ -42,6 +54,8 @@ def run_simulate(
             made.append((name, rate_hz, run_model(start_from, psi, sample_rate_hz=rate_hz)))
     for (_, _, traced), place in zip(made, places, strict=True):
         _write(place, traced)
+    if report is not None:
+        _write_page(report, made)
     if json:
         say(
             {
@@ -113,6 +127,20 @@ def _write(place: Path | None, traced: Any) -> None:
         reason = error.strerror or str(error)
         raise ParameterError(f"{place} cannot be written: {reason}", "--out", "Name another place.") from None
     tell(f"trajectory: {place}")
+
+
+def _write_page(path: str, made: list[tuple[str, float, Any]]) -> None:
+    from html import escape
+
+    from ..report.leaf import write_leaf
+
+    text = "\n\n".join(f"{name}: {traced}" for name, _, traced in made)
+    parts = []
+    for name, _, traced in made:
+        # The scripts stand once in the page, with the first picture.
+        picture = traced.figure().to_html(full_html=False, include_plotlyjs=not parts)
+        parts.append(f"<h2>{escape(name)}</h2>\n{picture}")
+    written(path, lambda: write_leaf(path, "Free runs" if len(made) > 1 else "Free run", text, "\n".join(parts)))
 
 
 def _as_json(name: str, rate_hz: float, traced: Any) -> dict[str, Any]:

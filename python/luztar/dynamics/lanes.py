@@ -30,20 +30,41 @@ COLUMNS: Mapping[str, str] = MappingProxyType(
         "stribeck.extra_nm": "stribeck_nm",
         "stribeck.speed_rad_s": "stribeck_speed_rad_s",
         "stiction.extra_nm": "stiction_nm",
+        "end_stop.stiffness_nm_per_rad": "end_stop_nm_per_rad",
+        "end_stop.limit_rad": "end_stop_limit_rad",
+        "dead_zone.stiffness_nm_per_rad": "dead_zone_nm_per_rad",
+        "dead_zone.half_width_rad": "dead_zone_half_width_rad",
+        "once_per_rev.amplitude_nm": "once_per_rev_nm",
+        "once_per_rev.phase_rad": "once_per_rev_phase_rad",
+        "twice_per_rev.amplitude_nm": "twice_per_rev_nm",
+        "twice_per_rev.phase_rad": "twice_per_rev_phase_rad",
+        "cogging.amplitude_nm": "cogging_nm",
+        "cogging.phase_rad": "cogging_phase_rad",
+        "cogging.per_turn": "cogging_per_turn",
+        "position_coulomb.slope_nm_per_rad": "position_coulomb_nm_per_rad",
+        "tight_spot.extra_nm": "tight_spot_nm",
+        "tight_spot.angle_rad": "tight_spot_angle_rad",
+        "tight_spot.width_rad": "tight_spot_width_rad",
+        "load.coefficient": "load_coefficient",
+        "dwell.extra_nm": "dwell_nm",
+        "dwell.time_s": "dwell_time_s",
+        "presliding.breakaway_rad": "presliding_breakaway_rad",
+        "presliding.shape": "presliding_shape",
+        "lugre.breakaway_rad": "lugre_breakaway_rad",
+        "lugre.damping_nm_s_per_rad": "lugre_damping_nm_s_per_rad",
     }
 )
 METHODS = ("split", "moreau_jean")
 
 
-def table(parameters: Mapping[str, Any]) -> tuple[np.ndarray, bool]:
-    """Return parameters as rows of the core's columns, and whether they are many.
+def columns(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Return parameters by the core's names, each a number or one per lane.
 
     Raises
     ------
     ParameterError
         Names the parameter.
     """
-    names = _core.steering_parameters()
     values: dict[str, np.ndarray] = {}
     for key, value in parameters.items():
         if key not in COLUMNS:
@@ -58,17 +79,47 @@ def table(parameters: Mapping[str, Any]) -> tuple[np.ndarray, bool]:
     for needed in ("steering.inertia_kg_m2", "steering.ratio", "steering.stiffness_nm_per_rad"):
         if COLUMNS[needed] not in values:
             raise ParameterError(f"{needed} is missing", "parameters", "Give inertia, ratio and stiffness.")
-    sizes = {key: a.size for key, a in values.items() if a.ndim == 1}
+    return values
+
+
+def agreed(sizes: Mapping[str, int]) -> int:
+    """Return the number of lanes that all arguments agree on; 1 where none has lanes.
+
+    Raises
+    ------
+    ParameterError
+        Names the argument.
+    """
     lanes = max(sizes.values(), default=1)
     for key, size in sizes.items():
         if size != lanes:
             raise ParameterError(f"{key} has {size} values, others {lanes}", key, "Give one value per lane.")
     if lanes == 0:
         raise ParameterError("there are no lanes", "parameters", "Give at least one value.")
-    rows = np.zeros((lanes, len(names)))
+    return lanes
+
+
+def rows(values: Mapping[str, np.ndarray], index: np.ndarray) -> np.ndarray:
+    """Return some lanes as rows of the core's columns."""
+    names = _core.steering_parameters()
+    made = np.zeros((index.size, len(names)))
     for i, name in enumerate(names):
-        rows[:, i] = values.get(name, 0.0)
-    return rows, bool(sizes)
+        if name in values:
+            made[:, i] = values[name][index] if values[name].ndim else values[name]
+    return made
+
+
+def table(parameters: Mapping[str, Any]) -> tuple[np.ndarray, bool]:
+    """Return parameters as rows of the core's columns, and whether they are many.
+
+    Raises
+    ------
+    ParameterError
+        Names the parameter.
+    """
+    values = columns(parameters)
+    sizes = {key: a.size for key, a in values.items() if a.ndim == 1}
+    return rows(values, np.arange(agreed(sizes))), bool(sizes)
 
 
 def rate(sample_rate_hz: Any) -> float:
@@ -89,7 +140,10 @@ def starts(lanes: int, angle_rad: Any, speed_rad_s: Any) -> np.ndarray:
     """Return angle and speed at the start, one row per lane."""
     rows = np.zeros((lanes, 2))
     for column, (name, value) in enumerate((("start_rad", angle_rad), ("start_speed_rad_s", speed_rad_s))):
-        array = np.asarray(value, dtype=np.float64)
+        try:
+            array = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ParameterError(f"{name} is {value!r}", name, "Give a number, or one per lane.") from None
         if array.ndim > 1 or array.size not in (1, lanes):
             raise ParameterError(f"{name} has the shape {array.shape}", name, "Give a number, or one per lane.")
         rows[:, column] = array

@@ -43,7 +43,7 @@ def trace(
     rate = number("sample_rate_hz", sample_rate_hz)
     start = (number("start_rad", start_rad), number("start_speed_rad_s", start_speed_rad_s))
     steps = whole_number("substeps", substeps, 1, 1_000_000)
-    phi, speed, events, energies = _core.trace_steering(
+    phi, speed, friction, events, energies = _core.trace_steering(
         rows, start, psi, load, sample_rate_hz=rate, substeps=steps, method=method
     )
     return Trace(
@@ -51,6 +51,7 @@ def trace(
         roadwheel_rad=phi,
         speed_rad_s=speed,
         handwheel_rad=psi,
+        friction_nm=friction,
         events=tuple(Event(t, kind, int(direction)) for t, kind, direction in events),
         energy_j=MappingProxyType(dict(energies)),
     )

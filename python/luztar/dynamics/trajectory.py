@@ -76,6 +76,9 @@ class Trace(Trajectory):
     Attributes
     ----------
     handwheel_rad : ndarray, shape (n,)
+    friction_nm : ndarray, shape (n,)
+        Torque of all friction against the road wheel's motion: the mean over the step after each sample, of second
+        order in the step but for steps with an event. At rest it is what is held.
     events : tuple of Event
     energy_j : mapping of str to float
         ``handwheel`` and ``load`` (work put in), ``stored_first``, ``stored_last``, ``dry``, ``viscous``, ``curved``
@@ -83,6 +86,7 @@ class Trace(Trajectory):
     """
 
     handwheel_rad: np.ndarray
+    friction_nm: np.ndarray
     events: tuple[Event, ...]
     energy_j: Mapping[str, float]
 
@@ -91,11 +95,18 @@ class Trace(Trajectory):
         """Whether the energy that the numbers do not account for is below a hundredth of what was turned over."""
         return abs(self.energy_j["residual"]) <= LARGEST_RESIDUAL * self.energy_j["turnover"]
 
+    def figure(self) -> Any:
+        """Return angles over time with stick shaded, phase portrait, friction over speed and energies (plotly)."""
+        from ..report.free_run import free_run
+
+        return free_run(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the trace as plain JSON values."""
         return {
             **super().to_dict(),
             "handwheel_rad": self.handwheel_rad.tolist(),
+            "friction_nm": self.friction_nm.tolist(),
             "events": [e.to_dict() for e in self.events],
             "energy_j": dict(self.energy_j),
             "balanced": self.balanced,

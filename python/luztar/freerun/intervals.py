@@ -26,6 +26,10 @@ def stroke_slices(data: Data) -> list[slice]:
     return out
 
 
+# Not a size but one of two kinds.
+CHOICES = ("presliding.shape",)
+
+
 def estimates(data: Data, parameters: Parameters, values: np.ndarray) -> dict[str, Estimate]:
     """Return every parameter of a fit, keyed ``effect.parameter``."""
     model = parameters.model
@@ -43,6 +47,10 @@ def estimates(data: Data, parameters: Parameters, values: np.ndarray) -> dict[st
             continue
         i = parameters.free.index(key)
         value, width = float(values[i]), float(half[i])
+        if key in CHOICES:
+            value = float(value > 0.5)
+            out[key] = Estimate(value, value, value, True, units[key], "the better of two")
+            continue
         if value <= parameters.low[i] or value >= parameters.high[i]:
             out[key] = Estimate(value, None, None, False, units[key], "the search stopped at its bound")
         elif not math.isfinite(width):

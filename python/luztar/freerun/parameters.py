@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,8 @@ LEAST_SHARE: Mapping[str, float] = {
     "steering.inertia_kg_m2": 0.02,
     "steering.stiffness_nm_per_rad": 1e-3,
     "stribeck.speed_rad_s": 1e-3,
+    "dwell.time_s": 1e-2,
+    "presliding.breakaway_rad": 0.02,
 }
 
 
@@ -90,6 +92,28 @@ def keys_of(model: Model) -> tuple[str, ...]:
     return tuple(f"{c.name}.{p.key}" for c in cards for p in c.parameters)
 
 
+# On an elastic contact nothing is at rest: what is felt at rest only is no part of it.
+APART: tuple[frozenset[str], ...] = (frozenset({"presliding", "stiction"}), frozenset({"presliding", "dwell"}))
+
+
+def are_apart(effects: Collection[str]) -> bool:
+    """Return whether two of some effects exclude each other in a free run."""
+    return any(pair <= set(effects) for pair in APART)
+
+
+def require_one_contact(model: Model) -> None:
+    """Refuse a model whose contact is elastic and rigid at once.
+
+    Raises
+    ------
+    ModelError
+    """
+    if are_apart(model.effects):
+        others = " and ".join(e for e in ("stiction", "dwell") if e in model.effects)
+        remedy = f"Take out presliding or {others}; stribeck goes with presliding."
+        raise ModelError(f"presliding leaves nothing at rest, where {others} is felt", "effects", remedy)
+
+
 def require_scale(model: Model) -> None:
     """Refuse a model whose torques have no scale: angles alone do not show it.
 
@@ -114,6 +138,7 @@ def parameters_of(model: Model, sizes: Mapping[str, float]) -> Parameters:
         What is large for each key, from :func:`luztar.freerun.sizes.sizes_of`.
     """
     require_scale(model)
+    require_one_contact(model)
     names = _core.steering_parameters()
     columns = {key: names.index(column) for key, column in COLUMNS.items()}
     free = tuple(key for key in keys_of(model) if key not in model.known)
@@ -138,7 +163,13 @@ def parameters_of(model: Model, sizes: Mapping[str, float]) -> Parameters:
 
 def _one_sided(key: str) -> bool:
     """Whether a free run allows only one sign: static friction below the kinetic one never holds a body."""
-    return key in ("coulomb.level_nm", "viscous.coefficient_nm_s_per_rad", "stiction.extra_nm", "freeplay.gap_rad")
+    return key in (
+        "coulomb.level_nm",
+        "viscous.coefficient_nm_s_per_rad",
+        "stiction.extra_nm",
+        "dwell.extra_nm",
+        "freeplay.gap_rad",
+    )
 
 
 def step_of(parameters: Parameters, values: np.ndarray) -> np.ndarray:

@@ -24,11 +24,7 @@ WOUND_SHARE = 0.3
 
 def highest_rad_s(rows: np.ndarray, wound_rad: float) -> np.ndarray:
     """Return the highest circular frequency of every row, its spring wound up by so much."""
-    at = {name: i for i, name in enumerate(_core.steering_parameters())}
-    bend = 3.0 * np.maximum(rows[:, at["hardening_nm_per_rad3"]], 0.0) * wound_rad**2
-    tangent = rows[:, at["stiffness_nm_per_rad"]] + bend
-    springs = rows[:, at["ratio"]] ** 2 * tangent + rows[:, at["aligning_nm_per_rad"]]
-    return np.asarray(np.sqrt(springs / rows[:, at["inertia_kg_m2"]]))
+    return _core.steering_highest_rad_s(np.ascontiguousarray(rows), wound_rad)
 
 
 def _steps(records: Sequence[Record], rows: np.ndarray) -> tuple[int, np.ndarray]:

@@ -13,6 +13,8 @@ from .record import Record
 # The lowest oscillation of a steering mechanism on its column lies between 2 and 15 Hz; its damping is below critical.
 TYPICAL_HZ = 6.0
 TYPICAL_DAMPING = 0.2
+# A body that is turned to and fro rests for a part of a second at each end.
+TYPICAL_REST_S = 0.3
 
 
 def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
@@ -63,6 +65,26 @@ def sizes_of(records: Sequence[Record], model: Model) -> Mapping[str, float]:
         "stribeck.extra_nm": friction,
         "stribeck.speed_rad_s": 0.2 * fast,
         "stiction.extra_nm": friction,
+        "end_stop.stiffness_nm_per_rad": total,
+        "end_stop.limit_rad": float(np.abs(phi).max()),
+        "dead_zone.stiffness_nm_per_rad": 0.1 * total,
+        "dead_zone.half_width_rad": 0.3 * float(np.abs(phi).max()),
+        "once_per_rev.amplitude_nm": 0.3 * torque / ratio,
+        "twice_per_rev.amplitude_nm": 0.3 * torque / ratio,
+        "cogging.amplitude_nm": 0.1 * torque / ratio,
+        "once_per_rev.phase_rad": 1.0,
+        "twice_per_rev.phase_rad": 1.0,
+        "cogging.phase_rad": 1.0,
+        "cogging.per_turn": 3.0,
+        "position_coulomb.slope_nm_per_rad": friction / float(np.abs(phi).max()),
+        "tight_spot.extra_nm": friction,
+        "tight_spot.angle_rad": float(np.abs(phi).max()),
+        "tight_spot.width_rad": 0.1 * float(np.abs(phi).max()),
+        "load.coefficient": 0.3,
+        "dwell.extra_nm": friction,
+        "dwell.time_s": TYPICAL_REST_S,
+        "presliding.breakaway_rad": 0.05 * float(np.abs(phi).max()),
+        "presliding.shape": 1.0,
         "delay.time_s": 0.01,
         "offset.level_rad": 0.02 * float(np.ptp(phi)),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -23,9 +24,23 @@ GRIDS: Mapping[str, Mapping[str, tuple[float, ...]]] = {
     "drag": {"drag.coefficient_nm_s2_per_rad2": (0.1, 0.6)},
     "asymmetric_coulomb": {"asymmetric_coulomb.difference_nm": (-0.3, 0.3)},
     "asymmetric_viscous": {"asymmetric_viscous.difference_nm_s_per_rad": (-0.3, 0.3)},
+    "end_stop": {
+        "end_stop.stiffness_nm_per_rad": (0.1, 1.0),
+        "end_stop.limit_rad": (0.7, 0.85, 0.95),
+    },
+    "once_per_rev": {
+        "once_per_rev.amplitude_nm": (0.3,),
+        "once_per_rev.phase_rad": (-0.5 * math.pi, 0.0, 0.5 * math.pi, 0.95 * math.pi),
+    },
+    "presliding": {"presliding.breakaway_rad": (0.2, 1.0, 4.0), "presliding.shape": (0.0, 1.0)},
+    "dwell": {"dwell.extra_nm": (0.3, 1.0), "dwell.time_s": (0.3, 1.0, 4.0)},
     "delay": {"delay.time_s": (0.1, 1.0, 4.0)},
     "offset": {"offset.level_rad": (0.0,)},
 }
+# What is no amount of an effect: it stands at its size until it is searched.
+WHOLE = ("stribeck.speed_rad_s", "dwell.time_s", "end_stop.limit_rad", "presliding.breakaway_rad", "cogging.per_turn")
+# Where an effect does next to nothing, as a share of the size.
+NOTHING: Mapping[str, float] = {"presliding.breakaway_rad": 0.05}
 STRUCTURE_GRID: Mapping[str, tuple[float, ...]] = {
     "steering.inertia_kg_m2": (0.3, 1.0, 3.0),
     "viscous.coefficient_nm_s_per_rad": (0.3, 1.0, 3.0),
@@ -70,7 +85,9 @@ def starts_with(parameters: Parameters, found: Mapping[str, float], effect: str)
 def _next_to_nothing(parameters: Parameters, base: np.ndarray, effect: str) -> np.ndarray:
     out = base.copy()
     for i, key in enumerate(parameters.free):
-        if key.startswith(f"{effect}.") and key != "stribeck.speed_rad_s":
+        if key in NOTHING:
+            out[i] = NOTHING[key] * parameters.scale[i]
+        elif key.startswith(f"{effect}.") and key not in WHOLE:
             out[i] = 1e-3 * parameters.scale[i]
     return out
 
@@ -79,7 +96,7 @@ def _from_model(parameters: Parameters) -> np.ndarray:
     """Return the model's start values; what has none stands at its size if the structure needs it, else at 0."""
     out = np.zeros(len(parameters.free))
     for i, key in enumerate(parameters.free):
-        whole = key.startswith(("steering.", "viscous.")) or key == "stribeck.speed_rad_s"
+        whole = key.startswith(("steering.", "viscous.")) or key in WHOLE
         out[i] = parameters.model.start.get(key, parameters.scale[i] if whole else 0.0)
     return parameters.inside(out)
 

@@ -152,7 +152,7 @@ def _all(structure: str) -> dict[str, Card]:
                 continue
             raw |= {"typical": "", **steering_words.WORDS[raw["name"]]}
             parameters = tuple(_for_steering(raw["name"], p) for p in parameters)
-            parameters = tuple(p for p in parameters if p.key not in steering_words.RIGID)
+            parameters = tuple(p for p in parameters if f"{raw['name']}.{p.key}" not in steering_words.RIGID)
         fields: dict[str, Any] = {**raw, "structures": tuple(raw["structures"]), "parameters": parameters}
         found[raw["name"]] = Card(**fields)
     return found
@@ -161,7 +161,8 @@ def _all(structure: str) -> dict[str, Card]:
 def _for_steering(effect: str, p: Parameter) -> Parameter:
     if effect == "offset":
         return replace(p, key="level_rad", meaning="shift of the road wheel's angle")
-    return replace(p, **steering_words.MEANINGS.get(p.key, {}))
+    own = steering_words.MEANINGS.get(f"{effect}.{p.key}", steering_words.MEANINGS.get(p.key, {}))
+    return replace(p, **own)
 
 
 @functools.cache

@@ -1,8 +1,7 @@
 //! `luztar._core.simulate_steering`: free runs of the steering model, many parameter sets at once.
 
 use luztar::dynamics::{
-    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, SUMMARY, Start, Width, simulate, summarise,
-    trace,
+    Batch, Drive, Kernel, NAMES, OneMass, PARAMETERS, Start, Width, simulate, trace,
 };
 use numpy::{
     IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
@@ -12,8 +11,9 @@ use pyo3::prelude::*;
 
 use crate::error::CoreError;
 
-/// Angle, speed, events, energies.
+/// Angle, speed, friction, events, energies.
 type TraceParts<'py> = (
+    Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Vec<(f64, &'static str, f64)>,
@@ -24,6 +24,21 @@ type TraceParts<'py> = (
 #[pyfunction]
 pub fn steering_parameters() -> Vec<&'static str> {
     NAMES.to_vec()
+}
+
+/// The highest circular frequency of every row of `parameters`, rad/s, the column wound up by so much. Errors number
+/// the lanes from `first` on.
+#[pyfunction]
+#[pyo3(signature = (parameters, wound_rad, first=0))]
+pub fn steering_highest_rad_s<'py>(
+    py: Python<'py>,
+    parameters: PyReadonlyArray2<'_, f64>,
+    wound_rad: f64,
+    first: usize,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let highest = |body: &OneMass<f64>| body.highest_frequency_rad_s(wound_rad);
+    let made: Vec<f64> = bodies(&parameters, first)?.iter().map(highest).collect();
+    Ok(made.into_pyarray(py))
 }
 
 /// `parameters` (lanes, names), `starts` (lanes, 2), `phi` and `speed` (lanes, samples), written.
@@ -43,7 +58,7 @@ pub fn simulate_steering(
     mut phi: PyReadwriteArray2<'_, f64>,
     mut speed: Option<PyReadwriteArray2<'_, f64>>,
 ) -> PyResult<()> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, 0)?;
     let starts = self::starts(&starts)?;
     let psi = handwheel_rad.as_slice()?;
     let load = load_nm
@@ -68,49 +83,7 @@ pub fn simulate_steering(
     Ok(())
 }
 
-/// The names of the columns of a summary.
-#[pyfunction]
-pub fn steering_summary_names() -> Vec<&'static str> {
-    SUMMARY.to_vec()
-}
-
-/// `out` (lanes, names), written.
-#[pyfunction]
-#[pyo3(signature = (parameters, starts, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method, width, out))]
-#[allow(clippy::too_many_arguments)]
-pub fn summarise_steering(
-    py: Python<'_>,
-    parameters: PyReadonlyArray2<'_, f64>,
-    starts: PyReadonlyArray2<'_, f64>,
-    handwheel_rad: PyReadonlyArray1<'_, f64>,
-    load_nm: Option<PyReadonlyArray1<'_, f64>>,
-    sample_rate_hz: f64,
-    substeps: usize,
-    method: &str,
-    width: &str,
-    mut out: PyReadwriteArray2<'_, f64>,
-) -> PyResult<()> {
-    let bodies = bodies(&parameters)?;
-    let starts = self::starts(&starts)?;
-    let psi = handwheel_rad.as_slice()?;
-    let load = load_nm
-        .as_ref()
-        .map(PyReadonlyArray1::as_slice)
-        .transpose()?;
-    let drive = Drive::new(psi, load, sample_rate_hz, substeps).map_err(CoreError)?;
-    let batch = Batch {
-        bodies: &bodies,
-        starts: &starts,
-        kernel: kernel(method)?,
-        width: self::width(width)?,
-    };
-    let out = out.as_slice_mut()?;
-    py.detach(|| summarise(batch, &drive, out))
-        .map_err(CoreError)?;
-    Ok(())
-}
-
-/// One trajectory: (phi, speed, events as (time, kind, direction), energies by name).
+/// One trajectory: (phi, speed, friction, events as (time, kind, direction), energies by name).
 #[pyfunction]
 #[pyo3(signature = (parameters, start, handwheel_rad, load_nm, *, sample_rate_hz, substeps, method))]
 #[allow(clippy::too_many_arguments)]
@@ -124,7 +97,7 @@ pub fn trace_steering<'py>(
     substeps: usize,
     method: &str,
 ) -> PyResult<TraceParts<'py>> {
-    let bodies = bodies(&parameters)?;
+    let bodies = bodies(&parameters, 0)?;
     let [body] = bodies[..] else {
         return Err(CoreError(luztar::Error::Length {
             name: "parameters",
@@ -167,12 +140,14 @@ pub fn trace_steering<'py>(
     Ok((
         made.phi.into_pyarray(py),
         made.speed.into_pyarray(py),
+        made.friction.into_pyarray(py),
         events,
         energies,
     ))
 }
 
-fn bodies(parameters: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<OneMass<f64>>> {
+/// The bodies of rows, which are the lanes from `first` on.
+pub fn bodies(parameters: &PyReadonlyArray2<'_, f64>, first: usize) -> PyResult<Vec<OneMass<f64>>> {
     if parameters.shape()[1] != PARAMETERS {
         return Err(CoreError(luztar::Error::Length {
             name: "parameters",
@@ -182,11 +157,39 @@ fn bodies(parameters: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<OneMass<f64>>>
         .into());
     }
     let (rows, _) = parameters.as_slice()?.as_chunks::<PARAMETERS>();
-    let made: Result<Vec<_>, _> = rows.iter().map(OneMass::from_array).collect();
+    let many = first + rows.len() > 1;
+    let made: Result<Vec<_>, _> = rows
+        .iter()
+        .enumerate()
+        .map(|(lane, row)| {
+            OneMass::from_array(row).map_err(|e| if many { of_lane(e, first + lane) } else { e })
+        })
+        .collect();
     Ok(made.map_err(CoreError)?)
 }
 
-fn starts(starts: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Start>> {
+/// The error of one of many lanes says which.
+fn of_lane(error: luztar::Error, lane: usize) -> luztar::Error {
+    match error {
+        luztar::Error::NonFinite { name, value, .. } => luztar::Error::NonFinite {
+            name,
+            index: lane,
+            value,
+        },
+        luztar::Error::OutOfRange {
+            name,
+            value,
+            interval,
+        } => luztar::Error::OutOfRange {
+            name,
+            value,
+            interval: format!("{interval}, lane {lane}"),
+        },
+        other => other,
+    }
+}
+
+pub fn starts(starts: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Start>> {
     if starts.shape()[1] != 2 {
         return Err(CoreError(luztar::Error::Length {
             name: "starts",
@@ -202,7 +205,7 @@ fn starts(starts: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Start>> {
         .collect())
 }
 
-fn kernel(name: &str) -> PyResult<Kernel> {
+pub fn kernel(name: &str) -> PyResult<Kernel> {
     match name {
         "split" => Ok(Kernel::Split),
         "moreau_jean" => Ok(Kernel::MoreauJean),
@@ -210,7 +213,7 @@ fn kernel(name: &str) -> PyResult<Kernel> {
     }
 }
 
-pub(crate) fn width(name: &str) -> PyResult<Width> {
+pub fn width(name: &str) -> PyResult<Width> {
     match name {
         "widest" => Ok(Width::Widest),
         "baseline" => Ok(Width::Baseline),

@@ -2,11 +2,13 @@
 // Docstrings are Python's: they say array_like without backticks.
 #![allow(missing_docs, clippy::needless_pass_by_value, clippy::doc_markdown)]
 
+mod batches;
 mod door;
 mod driven;
 mod dynamics;
 mod effects;
 mod error;
+mod interruptible;
 mod oracle;
 mod projections;
 mod regression;
@@ -22,11 +24,12 @@ mod _core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::batches::{check_lanes, lane_columns, run_lanes};
+    #[pymodule_export]
     use crate::driven::{Recording, held_out, normal_equations, solve_block};
     #[pymodule_export]
     use crate::dynamics::{
-        simulate_steering, steering_parameters, steering_summary_names, summarise_steering,
-        trace_steering,
+        simulate_steering, steering_highest_rad_s, steering_parameters, trace_steering,
     };
     #[pymodule_export]
     use crate::effects::effect_cards;

@@ -11,21 +11,42 @@
     clippy::needless_range_loop
 )]
 
+mod bristle;
+mod control;
 mod drive;
 mod events;
+mod ground;
+mod inside;
+mod keep;
+mod lane_check;
+mod lane_drives;
 mod lanes;
 mod ledger;
+mod level;
+mod march;
 mod moreau;
 mod number;
+mod observe;
 mod one_mass;
 pub mod oracle;
+mod parameters;
 mod split;
+mod tile;
 mod trace;
+mod watched;
 
+pub use bristle::Bristle;
+pub use control::Control;
 pub use drive::Drive;
 pub use events::{Event, EventKind};
-pub use lanes::{Batch, Kernel, SUMMARY, Start, Width, simulate, summarise};
+pub use ground::Ground;
+pub use keep::{ENERGIES, Keep, SUMMARY};
+pub use lane_check::check_lanes;
+pub use lane_drives::{Channel, LaneDrives};
+pub use lanes::{Batch, Drives, Kernel, Results, Start, Width, run_lanes, simulate};
 pub use ledger::Ledger;
+pub use level::Level;
 pub use number::Pure;
-pub use one_mass::{NAMES, OneMass, PARAMETERS};
+pub use one_mass::OneMass;
+pub use parameters::{NAMES, PARAMETERS};
 pub use trace::{Trace, trace};

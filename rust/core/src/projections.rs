@@ -20,7 +20,8 @@ pub fn luz<L: Lane>(x: L, a: L) -> L {
 /// Starting from rest, the state follows the motion as an elastic spring and slips once it reaches the radius: the
 /// friction state before and after break-away.
 #[must_use]
-pub fn stop(state: f64, increment: f64, radius: f64) -> f64 {
+#[inline]
+pub fn stop<L: Lane>(state: L, increment: L, radius: L) -> L {
     (state + increment).clamp(-radius, radius)
 }
 

@@ -1,6 +1,6 @@
 //! The friction state of a contact along a record of positions.
 
-use crate::effects::Contact;
+use crate::effects::{Contact, dahl};
 use crate::projections::{luz, stop};
 
 /// Beyond this many break-aways of travel nothing is left of what was before: `exp(-40)` is below a rounding.
@@ -159,9 +159,8 @@ impl Walk {
         }
         let target = behind.signum();
         let from = self.dahl;
-        let decay = -(-relative.min(FORGOTTEN)).exp_m1();
-        self.dahl = from + (target - from) * decay;
-        let on_the_way = target + (from - target) * decay / relative;
+        self.dahl = dahl(from, target, relative.min(FORGOTTEN));
+        let on_the_way = target + (from - self.dahl) / relative;
         let share = behind / travel;
         Stretch {
             state: share * on_the_way,

@@ -23,19 +23,22 @@ pub struct Drive {
     step_s: f64,
 }
 
+/// Sub-steps of a record: both channels refined are 4 GiB.
+const MOST_STEPS: usize = 1 << 27;
+
 /// One channel over one sub-step: at its start, middle and end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parabola {
-    start: Pure,
-    middle: Pure,
-    end: Pure,
+    pub start: Pure,
+    pub middle: Pure,
+    pub end: Pure,
 }
 
 /// The drive over one sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    psi: Parabola,
-    load: Parabola,
+    pub psi: Parabola,
+    pub load: Parabola,
 }
 
 impl Span {
@@ -92,11 +95,16 @@ impl Drive {
         substeps: usize,
     ) -> Result<Self, Error> {
         require_positive("sample_rate_hz", sample_rate_hz)?;
-        if substeps == 0 {
+        let refinement = Refinement::new(substeps)?;
+        if handwheel_rad.len().saturating_mul(substeps) > MOST_STEPS {
             return Err(Error::OutOfRange {
                 name: "substeps",
-                value: 0.0,
-                interval: "[1, inf)".to_owned(),
+                value: substeps as f64,
+                interval: format!(
+                    "[1, {}] for a record of {} samples",
+                    (MOST_STEPS / handwheel_rad.len()).max(1),
+                    handwheel_rad.len()
+                ),
             });
         }
         if handwheel_rad.len() < 2 {
@@ -112,8 +120,8 @@ impl Drive {
             require_finite("load_nm", load)?;
         }
         Ok(Self {
-            handwheel: refine(handwheel_rad, 2 * substeps),
-            load: load_nm.map_or_else(Vec::new, |load| refine(load, 2 * substeps)),
+            handwheel: refinement.refine(handwheel_rad),
+            load: load_nm.map_or_else(Vec::new, |load| refinement.refine(load)),
             samples: handwheel_rad.len(),
             substeps,
             step_s: 1.0 / (sample_rate_hz * substeps as f64),
@@ -166,52 +174,102 @@ impl Drive {
     }
 }
 
-/// `parts` values per interval and the last sample.
-fn refine(samples: &[f64], parts: usize) -> Vec<f64> {
-    let last = samples.len() - 1;
-    let mut out = Vec::with_capacity(last * parts + 1);
-    for i in 0..last {
-        let (b, c) = (samples[i], samples[i + 1]);
-        // At the ends the parabola through the three nearest samples gives the missing neighbour.
-        let a = if i > 0 {
-            samples[i - 1]
+/// The cubic through the four nearest samples at the starts, middles and ends of the sub-steps of an interval.
+#[derive(Debug, Clone)]
+pub(super) struct Refinement {
+    /// Lagrange's weights of the four samples at every half sub-step.
+    weights: Vec<[f64; 4]>,
+}
+
+impl Refinement {
+    /// For so many sub-steps per interval.
+    pub fn new(substeps: usize) -> Result<Self, Error> {
+        if substeps == 0 {
+            return Err(Error::OutOfRange {
+                name: "substeps",
+                value: 0.0,
+                interval: "[1, inf)".to_owned(),
+            });
+        }
+        let parts = 2 * substeps;
+        let weights = (0..parts)
+            .map(|k| {
+                let t = k as f64 / parts as f64;
+                [
+                    -t * (t - 1.0) * (t - 2.0) / 6.0,
+                    (t * t - 1.0) * (t - 2.0) / 2.0,
+                    -t * (t + 1.0) * (t - 2.0) / 2.0,
+                    t * (t * t - 1.0) / 6.0,
+                ]
+            })
+            .collect();
+        Ok(Self { weights })
+    }
+
+    /// Sub-steps per interval.
+    pub fn substeps(&self) -> usize {
+        self.weights.len() / 2
+    }
+
+    /// The four samples at -1, 0, 1 and 2 of an interval; at the ends of the record the parabola through the three
+    /// nearest samples gives the missing one.
+    pub fn around(samples: &[f64], interval: usize) -> [f64; 4] {
+        let last = samples.len() - 1;
+        let (b, c) = (samples[interval], samples[interval + 1]);
+        let a = if interval > 0 {
+            samples[interval - 1]
         } else if last > 1 {
             3.0 * b - 3.0 * c + samples[2]
         } else {
             2.0 * b - c
         };
-        let d = if i + 2 <= last {
-            samples[i + 2]
+        let d = if interval + 2 <= last {
+            samples[interval + 2]
         } else if last > 1 {
-            3.0 * c - 3.0 * b + samples[i - 1]
+            3.0 * c - 3.0 * b + samples[interval - 1]
         } else {
             2.0 * c - b
         };
-        for k in 0..parts {
-            // Lagrange's cubic through the four samples at -1, 0, 1 and 2.
-            let t = k as f64 / parts as f64;
-            out.push(if k == 0 {
-                b
-            } else {
-                -a * t * (t - 1.0) * (t - 2.0) / 6.0 + b * (t * t - 1.0) * (t - 2.0) / 2.0
-                    - c * t * (t + 1.0) * (t - 2.0) / 2.0
-                    + d * t * (t * t - 1.0) / 6.0
-            });
-        }
+        [a, b, c, d]
     }
-    out.push(samples[last]);
-    out
+
+    /// The value at a half sub-step, the sample itself at the start of the interval.
+    fn value(&self, [a, b, c, d]: [f64; 4], part: usize) -> f64 {
+        if part == 0 {
+            return b;
+        }
+        let [p, q, r, s] = self.weights[part];
+        p * a + q * b + r * c + s * d
+    }
+
+    /// The weights at the middle and the end of a sub-step; none at the end of the interval, which is a sample.
+    #[inline(always)]
+    pub fn half_steps(&self, sub: usize) -> [Option<[f64; 4]>; 2] {
+        [2 * sub + 1, 2 * sub + 2].map(|part| self.weights.get(part).copied())
+    }
+
+    /// All values of a record and its last sample.
+    fn refine(&self, samples: &[f64]) -> Vec<f64> {
+        let (last, parts) = (samples.len() - 1, self.weights.len());
+        let mut out = Vec::with_capacity(last * parts + 1);
+        for interval in 0..last {
+            let around = Self::around(samples, interval);
+            out.extend((0..parts).map(|part| self.value(around, part)));
+        }
+        out.push(samples[last]);
+        out
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::refine;
+    use super::Refinement;
 
     #[test]
     fn a_cubic_passes_through_the_refinement() {
         let f = |t: f64| 0.3 - 1.2 * t + 0.7 * t * t - 0.05 * t * t * t;
         let samples: Vec<f64> = (0..12).map(|i| f(f64::from(i))).collect();
-        let fine = refine(&samples, 4);
+        let fine = Refinement::new(2).unwrap().refine(&samples);
         assert_eq!(fine.len(), 45);
         // The first and the last interval lean on a parabola.
         for (i, value) in fine.iter().enumerate().skip(4).take(36) {

@@ -9,13 +9,17 @@ use pulp::WithSimd;
 use rayon::prelude::*;
 
 use crate::Error;
-use crate::effects::Lane;
 
-use super::drive::{Drive, Span};
+use super::control::Control;
+use super::drive::Drive;
+use super::keep::Keep;
+use super::lane_check::check_lanes;
+use super::lane_drives::LaneDrives;
+use super::march::{Advance, Lanes, State, WithKernel, choose};
 use super::number::Pure;
-use super::one_mass::{OneMass, PARAMETERS};
-use super::split::Pace;
-use super::{moreau, split};
+use super::observe::{Places, Samples};
+use super::one_mass::OneMass;
+use super::watched::Watched;
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +59,9 @@ const MEDIUM: usize = 32;
 /// See [`MEDIUM`].
 const SMALL: usize = 8;
 
+/// Sub-steps between two looks whether to stop, where a sampling interval has many: a tenth of a millisecond.
+pub(super) const LOOK: usize = 512;
+
 /// The block that gives every thread something to do and no lane too many.
 fn block_for(lanes: usize) -> usize {
     let threads = rayon::current_num_threads();
@@ -80,6 +87,51 @@ pub struct Batch<'a> {
     pub width: Width,
 }
 
+/// What drives the lanes.
+#[derive(Debug, Clone, Copy)]
+pub enum Drives<'a> {
+    /// One record for all.
+    Shared(&'a Drive),
+    /// Every lane has its own.
+    Own(&'a LaneDrives<'a>),
+}
+
+impl Drives<'_> {
+    pub(super) fn samples(&self) -> usize {
+        match self {
+            Self::Shared(drive) => drive.samples(),
+            Self::Own(drives) => drives.samples(),
+        }
+    }
+
+    pub(super) fn substeps(&self) -> usize {
+        match self {
+            Self::Shared(drive) => drive.substeps(),
+            Self::Own(drives) => drives.substeps(),
+        }
+    }
+
+    pub(super) fn step_s(&self) -> f64 {
+        match self {
+            Self::Shared(drive) => drive.step_s(),
+            Self::Own(drives) => drives.step_s(),
+        }
+    }
+}
+
+/// Where the results of a batch go; what nobody wants is empty.
+#[derive(Debug, Default)]
+pub struct Results<'a> {
+    /// Angles, rad: the samples of each lane one after the other, lane by lane.
+    pub phi: &'a mut [f64],
+    /// Speeds, rad/s, likewise.
+    pub speed: &'a mut [f64],
+    /// One row per lane, as [`Keep`] says.
+    pub rows: &'a mut [f64],
+    /// Set where a lane is finished; those of a batch that was stopped are not all.
+    pub done: &'a mut [bool],
+}
+
 /// Runs every lane along a drive. `phi` and `speed` take the samples of each lane one after the other, lane by lane;
 /// `speed` may be empty if nobody needs it.
 ///
@@ -93,30 +145,102 @@ pub fn simulate(
     phi: &mut [f64],
     speed: &mut [f64],
 ) -> Result<(), Error> {
-    let wanted = batch.bodies.len() * drive.samples();
-    length("phi", phi.len(), wanted)?;
-    if !speed.is_empty() {
-        length("speed", speed.len(), wanted)?;
-    }
-    blocks(batch, drive, phi, speed, &mut [])
+    length("phi", phi.len(), batch.bodies.len() * drive.samples())?;
+    let results = Results {
+        phi,
+        speed,
+        ..Results::default()
+    };
+    let control = Control::default();
+    run_lanes(
+        batch,
+        Drives::Shared(drive),
+        &Keep::default(),
+        results,
+        &control,
+    )
 }
 
-/// What [`summarise`] keeps of a lane.
-pub const SUMMARY: [&str; 5] = [
-    "last_rad",
-    "last_speed_rad_s",
-    "peak_rad",
-    "rms_rad",
-    "at_rest_share",
-];
-
-/// Runs every lane along a drive and keeps [`SUMMARY`] of its samples only: memory does not grow with the record.
+/// Runs every lane along its drive and keeps what is asked for. A batch that `control` stops returns early; `done`
+/// tells what is finished then.
 ///
 /// # Errors
-/// As [`simulate`].
-pub fn summarise(batch: Batch<'_>, drive: &Drive, out: &mut [f64]) -> Result<(), Error> {
-    length("summary", out.len(), batch.bodies.len() * SUMMARY.len())?;
-    blocks(batch, drive, &mut [], &mut [], out)
+/// As [`simulate`], and for samples to keep that are not there.
+pub fn run_lanes(
+    batch: Batch<'_>,
+    drives: Drives<'_>,
+    keep: &Keep,
+    results: Results<'_>,
+    control: &Control,
+) -> Result<(), Error> {
+    let (lanes, samples) = (batch.bodies.len(), drives.samples());
+    keep.check(samples)?;
+    let Results {
+        phi,
+        speed,
+        rows,
+        done,
+    } = results;
+    for (name, got, each) in [
+        ("phi", phi.len(), samples),
+        ("speed", speed.len(), samples),
+        ("rows", rows.len(), keep.width(samples)),
+        ("done", done.len(), 1),
+    ] {
+        if got > 0 {
+            length(name, got, lanes * each)?;
+        }
+    }
+    check_lanes(batch.bodies, batch.starts, drives, batch.kernel, 0)?;
+    let watched = keep.watches_steps() || matches!(drives, Drives::Own(_));
+    // What is looked at inside of the steps costs more than small blocks do.
+    let block = if watched { MEDIUM } else { block_for(lanes) };
+    let count = lanes.div_ceil(block);
+    let effects = batch
+        .bodies
+        .iter()
+        .fold(0, |bits, body| bits | body.effects());
+    let places = cut(phi, block * samples, count)
+        .zip(cut(speed, block * samples, count))
+        .zip(cut(rows, block * keep.width(samples), count))
+        .zip(cut(done, block, count));
+    let parts: Vec<Part<'_>> = places
+        .enumerate()
+        .map(|(number, (((phi, speed), rows), done))| {
+            let first = number * block;
+            let last = (first + block).min(lanes);
+            Part {
+                bodies: &batch.bodies[first..last],
+                starts: &batch.starts[first..last],
+                first,
+                drives,
+                kernel: batch.kernel,
+                effects,
+                keep,
+                control,
+                places: Places {
+                    phi,
+                    speed,
+                    rows,
+                    done,
+                },
+            }
+        })
+        .collect();
+    parts
+        .into_par_iter()
+        .for_each(|part| match (part.drives, block) {
+            _ if control.stopped() => {}
+            (Drives::Shared(_), _) if watched => run(Watched::<true, MEDIUM>(part), batch.width),
+            (Drives::Own(_), _) if keep.watches_steps() => {
+                run(Watched::<true, MEDIUM>(part), batch.width);
+            }
+            (Drives::Own(_), _) => run(Watched::<false, MEDIUM>(part), batch.width),
+            (Drives::Shared(drive), SMALL) => run(Task::<SMALL>(part, drive), batch.width),
+            (Drives::Shared(drive), MEDIUM) => run(Task::<MEDIUM>(part, drive), batch.width),
+            (Drives::Shared(drive), _) => run(Task::<LARGE>(part, drive), batch.width),
+        });
+    Ok(())
 }
 
 fn length(name: &'static str, got: usize, wanted: usize) -> Result<(), Error> {
@@ -130,138 +254,33 @@ fn length(name: &'static str, got: usize, wanted: usize) -> Result<(), Error> {
     })
 }
 
-/// Cuts lanes and results into blocks and runs them over all threads. A result that nobody wants is empty.
-fn blocks(
-    batch: Batch<'_>,
-    drive: &Drive,
-    phi: &mut [f64],
-    speed: &mut [f64],
-    summary: &mut [f64],
-) -> Result<(), Error> {
-    check(batch, drive)?;
-    let block = block_for(batch.bodies.len());
-    let count = batch.bodies.len().div_ceil(block);
-    let rich = batch.bodies.iter().any(OneMass::is_rich);
-    let samples = drive.samples();
-    let places = cut(phi, block * samples, count)
-        .into_iter()
-        .zip(cut(speed, block * samples, count))
-        .zip(cut(summary, block * SUMMARY.len(), count));
-    let parts: Vec<Part<'_>> = places
-        .enumerate()
-        .map(|(number, ((phi, speed), summary))| {
-            let first = number * block;
-            let last = (first + block).min(batch.bodies.len());
-            Part {
-                bodies: &batch.bodies[first..last],
-                starts: &batch.starts[first..last],
-                drive,
-                kernel: batch.kernel,
-                rich,
-                phi,
-                speed,
-                summary,
-            }
-        })
-        .collect();
-    parts.into_par_iter().for_each(|part| match block {
-        SMALL => run(Task::<SMALL>(part), batch.width),
-        MEDIUM => run(Task::<MEDIUM>(part), batch.width),
-        _ => run(Task::<LARGE>(part), batch.width),
-    });
-    Ok(())
-}
-
 /// The places of the blocks in a result; empty ones where the result is.
-fn cut(result: &mut [f64], size: usize, count: usize) -> Vec<&mut [f64]> {
-    if result.is_empty() {
-        (0..count).map(|_| &mut [][..]).collect()
-    } else {
-        result.chunks_mut(size).collect()
-    }
-}
-
-pub(super) fn check(batch: Batch<'_>, drive: &Drive) -> Result<(), Error> {
-    let lanes = batch.bodies.len();
-    if lanes == 0 || batch.starts.len() != lanes {
-        return Err(Error::Length {
-            name: "starts",
-            expected: format!("{lanes}, as many as bodies and at least one,"),
-            got: batch.starts.len(),
-        });
-    }
-    let wound = drive.reach_rad();
-    for (body, start) in batch.bodies.iter().zip(batch.starts) {
-        for (name, value) in [("start angle", start.phi), ("start speed", start.speed)] {
-            if !value.is_finite() {
-                return Err(Error::NonFinite {
-                    name,
-                    index: 0,
-                    value,
-                });
-            }
-        }
-        let frequency = body.highest_frequency_rad_s(wound + body.ratio * start.phi.abs());
-        let longest = 2.0 / frequency;
-        if drive.step_s() >= longest {
-            let spring = if body.ratio * body.ratio * body.stiffness >= body.aligning {
-                "stiffness_nm_per_rad"
-            } else {
-                "aligning_nm_per_rad"
-            };
-            return Err(Error::OutOfRange {
-                name: "step (seconds)",
-                value: drive.step_s(),
-                interval: format!(
-                    "(0, {longest:.3e}) for the spring {spring}: give more substeps or a higher sample rate"
-                ),
-            });
-        }
-    }
-    Ok(())
-}
-
-/// A kernel as a type: passed as a function it would be called through a pointer's shim, which stays outside of the
-/// code for the instruction set.
-trait Advance {
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step;
-}
-
-struct Split<const RICH: bool>;
-
-impl<const RICH: bool> Advance for Split<RICH> {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        split::step::<RICH>(body, span, pace, phi, v)
-    }
-}
-
-struct MoreauJean;
-
-impl Advance for MoreauJean {
-    #[inline(always)]
-    fn step(body: &OneMass<Pure>, span: &Span, pace: Pace, phi: Pure, v: Pure) -> split::Step {
-        moreau::step(body, span, pace, phi, v)
-    }
+fn cut<T>(result: &mut [T], size: usize, count: usize) -> impl Iterator<Item = &mut [T]> {
+    result
+        .chunks_mut(size.max(1))
+        .chain(std::iter::repeat_with(Default::default))
+        .take(count)
 }
 
 /// What a block works on.
-struct Part<'a> {
-    bodies: &'a [OneMass<f64>],
-    starts: &'a [Start],
-    drive: &'a Drive,
-    kernel: Kernel,
-    rich: bool,
-    phi: &'a mut [f64],
-    speed: &'a mut [f64],
-    summary: &'a mut [f64],
+pub(super) struct Part<'a> {
+    pub bodies: &'a [OneMass<f64>],
+    pub starts: &'a [Start],
+    /// The number of its first lane.
+    pub first: usize,
+    pub drives: Drives<'a>,
+    pub kernel: Kernel,
+    pub effects: usize,
+    pub keep: &'a Keep,
+    pub control: &'a Control,
+    pub places: Places<'a>,
 }
 
-/// One block of `N` lanes.
-struct Task<'a, const N: usize>(Part<'a>);
+/// One block of `N` lanes along one drive.
+struct Task<'a, const N: usize>(Part<'a>, &'a Drive);
 
 /// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
-fn run<const N: usize>(task: Task<'_, N>, width: Width) {
+fn run(task: impl WithSimd<Output = ()>, width: Width) {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         use pulp::Simd;
@@ -285,87 +304,35 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        match (self.0.kernel, self.0.rich) {
-            (Kernel::Split, false) => self.along::<Split<false>>(),
-            (Kernel::Split, true) => self.along::<Split<true>>(),
-            (Kernel::MoreauJean, _) => self.along::<MoreauJean>(),
-        }
+        let (kernel, effects) = (self.0.kernel, self.0.effects);
+        choose(kernel, effects, self);
     }
 }
 
-impl<const N: usize> Task<'_, N> {
+impl<const N: usize> WithKernel for Task<'_, N> {
+    type Output = ();
+
     #[inline(always)]
-    fn along<A: Advance>(self) {
-        let part = self.0;
-        let last = part.bodies.len() - 1;
-        // Lanes beyond the last repeat it, so that every block is full.
-        let mut table = [[0.0; N]; PARAMETERS];
-        let (mut phi, mut v) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let of = lane.min(last);
-            for (row, value) in table.iter_mut().zip(part.bodies[of].to_array()) {
-                row[lane] = value;
-            }
-            phi[lane] = part.starts[of].phi;
-            v[lane] = part.starts[of].speed;
-        }
-        let samples = part.drive.samples();
-        let h = Pure(part.drive.step_s());
-        let (mut rate, mut kept, mut damped) = ([0.0; N], [0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let pace = Pace::of(&OneMass::gather(&table, lane), h);
-            rate[lane] = pace.rate.0;
-            kept[lane] = pace.kept.0;
-            damped[lane] = pace.damped.0;
-        }
-        let (mut peak, mut squares, mut rest) = ([0.0; N], [0.0; N], [0.0; N]);
+    fn with<A: Advance>(self) {
+        let (part, drive) = (self.0, self.1);
+        let samples = drive.samples();
+        let lanes = Lanes::<N>::new(part.bodies, Pure(drive.step_s()));
+        let mut state = State::<N>::new(part.starts);
+        let mut seen = Samples::<N>::new(part.places, part.keep, part.bodies.len(), samples);
         for sample in 0..samples {
-            if !part.phi.is_empty() {
-                for lane in 0..=last {
-                    part.phi[lane * samples + sample] = phi[lane];
-                }
-            }
-            if !part.speed.is_empty() {
-                for lane in 0..=last {
-                    part.speed[lane * samples + sample] = v[lane];
-                }
-            }
-            if !part.summary.is_empty() {
-                for lane in 0..N {
-                    let size = Pure(phi[lane]).abs();
-                    peak[lane] = size.when(size.0 > peak[lane], Pure(peak[lane])).0;
-                    squares[lane] += phi[lane] * phi[lane];
-                    rest[lane] += Pure::ONE.when(v[lane] == 0.0, Pure::ZERO).0;
-                }
-            }
+            seen.take(sample, &state);
             if sample + 1 == samples {
                 break;
             }
-            for sub in 0..part.drive.substeps() {
-                let span = part.drive.span(sample * part.drive.substeps() + sub);
-                for lane in 0..N {
-                    let body = OneMass::gather(&table, lane);
-                    let pace = Pace {
-                        h,
-                        rate: Pure(rate[lane]),
-                        kept: Pure(kept[lane]),
-                        damped: Pure(damped[lane]),
-                    };
-                    let next = A::step(&body, &span, pace, Pure(phi[lane]), Pure(v[lane]));
-                    phi[lane] = next.phi.0;
-                    v[lane] = next.speed.0;
+            for sub in 0..drive.substeps() {
+                if sub.is_multiple_of(LOOK) && part.control.stopped() {
+                    return;
                 }
+                let span = drive.span(sample * drive.substeps() + sub);
+                A::advance(&lanes, |_| span, &mut state);
             }
         }
-        for (lane, kept) in part.summary.chunks_exact_mut(SUMMARY.len()).enumerate() {
-            let n = samples as f64;
-            kept.copy_from_slice(&[
-                phi[lane],
-                v[lane],
-                peak[lane],
-                (squares[lane] / n).sqrt(),
-                rest[lane] / n,
-            ]);
-        }
+        seen.finish(&state, |_, _, _| {});
+        part.control.add(part.bodies.len());
     }
 }

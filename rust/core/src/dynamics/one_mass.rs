@@ -3,35 +3,32 @@
 //! `I phi'' + friction(phi') = M`, `M = p (K l + K3 l^3) - c phi + M_phi`, `l = luz(psi - p phi, z0)`. At rest friction
 //! is whatever keeps the body there, up to its static level.
 
-use crate::Error;
 use crate::effects::{
-    AsymmetricCoulomb, AsymmetricViscous, Drag, Hardening, Law, Motion, Stiffness, Stribeck,
+    AsymmetricCoulomb, AsymmetricViscous, Drag, Hardening, Lane, Law, Motion, Stiffness, Stribeck,
     Viscous,
 };
 use crate::projections::luz;
 
+use super::bristle::Bristle;
+use super::ground::Ground;
+use super::level::Level;
 use super::number::Pure;
 
-/// How many parameters a body has.
-pub const PARAMETERS: usize = 14;
-
-/// Their names, in the order of [`OneMass::from_array`].
-pub const NAMES: [&str; PARAMETERS] = [
-    "inertia_kg_m2",
-    "ratio",
-    "stiffness_nm_per_rad",
-    "aligning_nm_per_rad",
-    "gap_rad",
-    "hardening_nm_per_rad3",
-    "viscous_nm_s_per_rad",
-    "asymmetric_viscous_nm_s_per_rad",
-    "drag_nm_s2_per_rad2",
-    "coulomb_nm",
-    "asymmetric_coulomb_nm",
-    "stribeck_nm",
-    "stribeck_speed_rad_s",
-    "stiction_nm",
-];
+/// Which effects a step looks at, as bits; what does not act adds exactly 0, so that leaving it out changes no bit.
+/// None of them: linear springs, a gap, viscous and symmetric dry friction.
+pub(super) const PLAIN: usize = 0;
+/// What needs neither the speed nor a transcendental function: hardening, stops, friction over side, angle and load.
+pub(super) const LOCAL: usize = 1;
+/// What depends on the speed in a curved way.
+pub(super) const CURVED: usize = 2;
+/// Waves and bumps over the angle.
+pub(super) const WAVY: usize = 4;
+/// Everything on a rigid contact.
+pub(super) const EVERY: usize = LOCAL | CURVED | WAVY;
+/// A contact that gives way before it slides.
+pub(super) const ELASTIC: usize = 8;
+/// One that does so by the law of `LuGre`.
+pub(super) const LUGRE: usize = 16;
 
 /// One body: what stands between the handwheel and it, what pulls it to the ground, what brakes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,186 +61,114 @@ pub struct OneMass<L> {
     pub stribeck_speed: L,
     /// Static friction above the kinetic one, felt at rest only.
     pub stiction: L,
+    /// What acts by angle alone.
+    pub ground: Ground<L>,
+    /// What changes the level of dry friction.
+    pub level: Level<L>,
+    /// What the contact gives way before it slides.
+    pub bristle: Bristle<L>,
+}
+
+/// The torque that friction holds at rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Held {
+    middle: Pure,
+    difference: Pure,
+}
+
+impl Held {
+    /// To one side.
+    #[inline(always)]
+    pub fn to<const WITH: usize>(self, direction: Pure) -> Pure {
+        if WITH & LOCAL == 0 {
+            return self.middle;
+        }
+        self.middle + direction * self.difference
+    }
 }
 
 impl OneMass<f64> {
-    /// Reads the parameters in the order of [`NAMES`] and checks them.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`] or [`Error::OutOfRange`], naming the parameter.
-    pub fn from_array(values: &[f64; PARAMETERS]) -> Result<Self, Error> {
-        for (name, value) in NAMES.iter().zip(values) {
-            if !value.is_finite() {
-                return Err(Error::NonFinite {
-                    name,
-                    index: 0,
-                    value: *value,
-                });
-            }
-        }
-        let out = |name: &'static str, value: f64, interval: &str| {
-            Err(Error::OutOfRange {
-                name,
-                value,
-                interval: interval.to_owned(),
-            })
-        };
-        for positive in [0, 1] {
-            if values[positive] <= 0.0 {
-                return out(NAMES[positive], values[positive], "(0, inf)");
-            }
-        }
-        for not_negative in [2, 3, 4, 6, 8, 9, 12] {
-            if values[not_negative] < 0.0 {
-                return out(NAMES[not_negative], values[not_negative], "[0, inf)");
-            }
-        }
-        let [
-            inertia,
-            ratio,
-            stiffness,
-            aligning,
-            gap,
-            hardening,
-            viscous,
-            asymmetric_viscous,
-            drag,
-            coulomb,
-            asymmetric_coulomb,
-            stribeck,
-            stribeck_speed,
-            stiction,
-        ] = *values;
-        // Friction that drives the motion would be a source of energy.
-        if asymmetric_coulomb.abs() > coulomb {
-            return out(NAMES[10], asymmetric_coulomb, "[-coulomb_nm, coulomb_nm]");
-        }
-        if asymmetric_viscous.abs() > viscous {
-            let interval = "[-viscous_nm_s_per_rad, viscous_nm_s_per_rad]";
-            return out(NAMES[7], asymmetric_viscous, interval);
-        }
-        let least = coulomb - asymmetric_coulomb.abs();
-        if stribeck < -least {
-            return out(NAMES[11], stribeck, "[-coulomb_nm, inf)");
-        }
-        if stribeck != 0.0 && stribeck_speed <= 0.0 {
-            return out(NAMES[12], stribeck_speed, "(0, inf) with a stribeck_nm");
-        }
-        if stiction < 0.0 {
-            let interval = "[0, inf): static friction is at least kinetic friction";
-            return out(NAMES[13], stiction, interval);
-        }
-        Ok(Self {
-            inertia,
-            ratio,
-            stiffness,
-            aligning,
-            gap,
-            hardening,
-            viscous,
-            asymmetric_viscous,
-            drag,
-            coulomb,
-            asymmetric_coulomb,
-            stribeck,
-            // Without an extra the speed says nothing, and 0 would divide.
-            stribeck_speed: if stribeck_speed > 0.0 {
-                stribeck_speed
-            } else {
-                1.0
-            },
-            stiction,
-        })
-    }
-
-    /// The parameters in the order of [`NAMES`].
-    #[must_use]
-    pub fn to_array(&self) -> [f64; PARAMETERS] {
-        [
-            self.inertia,
-            self.ratio,
-            self.stiffness,
-            self.aligning,
-            self.gap,
-            self.hardening,
-            self.viscous,
-            self.asymmetric_viscous,
-            self.drag,
-            self.coulomb,
-            self.asymmetric_coulomb,
-            self.stribeck,
-            self.stribeck_speed,
-            self.stiction,
-        ]
-    }
-
-    /// The same body as the step takes it.
-    #[must_use]
-    pub fn pure(&self) -> OneMass<Pure> {
-        let values = self.to_array();
-        OneMass::gather(&values.map(|v| [v]), 0)
-    }
-
     /// Highest circular frequency of the body on its springs, rad/s, where the handwheel spring is wound up by no
     /// more than `wound_rad`.
     #[must_use]
     pub fn highest_frequency_rad_s(&self, wound_rad: f64) -> f64 {
-        let tangent = self.stiffness + 3.0 * self.hardening.max(0.0) * wound_rad * wound_rad;
-        ((self.ratio * self.ratio * tangent + self.aligning) / self.inertia).sqrt()
+        let total: f64 = self.springs(wound_rad).iter().map(|(_, k)| k).sum();
+        (total / self.inertia).sqrt()
     }
 
-    /// Whether anything beyond linear springs, a gap, viscous and symmetric dry friction acts. What does not act adds
-    /// exactly 0, so that leaving it out of the step changes no bit.
-    #[must_use]
-    pub fn is_rich(&self) -> bool {
-        self.stribeck != 0.0
-            || self.drag != 0.0
-            || self.asymmetric_viscous != 0.0
-            || self.asymmetric_coulomb != 0.0
-            || self.hardening != 0.0
+    /// The parameter of the stiffest spring.
+    pub(super) fn stiffest_spring(&self, wound_rad: f64) -> &'static str {
+        let springs = self.springs(wound_rad).into_iter();
+        springs
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or("", |s| s.0)
+    }
+
+    /// The stiffest that every spring can be, at the road wheel, Nm/rad, by the name of its parameter.
+    fn springs(&self, wound_rad: f64) -> [(&'static str, f64); 6] {
+        let tangent = self.stiffness + 3.0 * self.hardening.max(0.0) * wound_rad * wound_rad;
+        let [stop, zone, waves] = self.ground.stiffnesses(self.ratio);
+        // Friction that gives way is a spring below break-away; the level may be higher elsewhere, but not by orders.
+        let level = self.coulomb
+            + self.asymmetric_coulomb.abs()
+            + self.stribeck.max(0.0)
+            + self.level.tight_spot[0].max(0.0);
+        [
+            ("stiffness_nm_per_rad", self.ratio * self.ratio * tangent),
+            ("aligning_nm_per_rad", self.aligning),
+            ("end_stop_nm_per_rad", stop),
+            ("dead_zone_nm_per_rad", zone),
+            ("cogging_nm", waves),
+            ("presliding_breakaway_rad", level * self.bristle.per_travel),
+        ]
+    }
+
+    /// Which effects the step must look at, as bits.
+    pub(super) fn effects(&self) -> usize {
+        let any = |values: &[f64]| values.iter().any(|v| *v != 0.0);
+        let local = any(&[self.hardening, self.asymmetric_coulomb])
+            || self.ground.has_springs()
+            || self.level.is_straight();
+        [
+            (LOCAL, local),
+            (
+                CURVED,
+                any(&[self.stribeck, self.drag, self.asymmetric_viscous]),
+            ),
+            (WAVY, self.ground.has_waves() || self.level.has_spot()),
+            (ELASTIC, self.bristle.acts()),
+            (LUGRE, self.bristle.lugre != 0.0),
+        ]
+        .into_iter()
+        .fold(
+            PLAIN,
+            |bits, (bit, acts)| if acts { bits | bit } else { bits },
+        )
     }
 }
 
 impl OneMass<Pure> {
-    /// One lane of a table of parameters, in the order of [`NAMES`].
-    #[inline(always)]
-    pub(super) fn gather<const N: usize>(table: &[[f64; N]; PARAMETERS], lane: usize) -> Self {
-        let of = |row: usize| Pure(table[row][lane]);
-        Self {
-            inertia: of(0),
-            ratio: of(1),
-            stiffness: of(2),
-            aligning: of(3),
-            gap: of(4),
-            hardening: of(5),
-            viscous: of(6),
-            asymmetric_viscous: of(7),
-            drag: of(8),
-            coulomb: of(9),
-            asymmetric_coulomb: of(10),
-            stribeck: of(11),
-            stribeck_speed: of(12),
-            stiction: of(13),
-        }
-    }
-
     /// The torque that springs and load put on the body.
     #[inline(always)]
     #[must_use]
-    pub fn torque<const RICH: bool>(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
+    pub fn torque<const WITH: usize>(&self, psi: Pure, load: Pure, phi: Pure) -> Pure {
         let at_wheel = motion(phi, Pure::ZERO, Pure::ZERO);
-        self.ratio * self.at_handwheel::<RICH>(psi, phi)
+        let sum = self.ratio * self.at_handwheel::<WITH>(psi, phi)
             - self.aligning * one::<Stiffness>(&at_wheel, 0.0)
-            + load
+            + load;
+        if WITH & (LOCAL | WAVY) == 0 {
+            return sum;
+        }
+        sum - self.ground.torque::<WITH>(phi, self.ratio)
     }
 
     /// The torque that the spring asks of the handwheel.
     #[inline(always)]
     #[must_use]
-    pub fn at_handwheel<const RICH: bool>(&self, psi: Pure, phi: Pure) -> Pure {
+    pub fn at_handwheel<const WITH: usize>(&self, psi: Pure, phi: Pure) -> Pure {
         let wound = motion(self.wound(psi, phi), Pure::ZERO, Pure::ZERO);
         let linear = self.stiffness * one::<Stiffness>(&wound, 0.0);
-        if !RICH {
+        if WITH & LOCAL == 0 {
             return linear;
         }
         linear + self.hardening * one::<Hardening>(&wound, 0.0)
@@ -262,6 +187,7 @@ impl OneMass<Pure> {
         let square = wound * wound;
         Pure(0.5) * (self.inertia * v * v + self.stiffness * square + self.aligning * phi * phi)
             + Pure(0.25) * self.hardening * square * square
+            + self.ground.stored(phi, self.ratio)
     }
 
     /// Stribeck's part of dry friction.
@@ -272,26 +198,55 @@ impl OneMass<Pure> {
         direction * self.stribeck * one::<Stribeck>(&moving, self.stribeck_speed.0)
     }
 
+    /// The level of dry friction at an angle and under a load, without what depends on side and speed. It never falls
+    /// so far that friction drives.
+    #[inline(always)]
+    #[must_use]
+    pub(super) fn base<const WITH: usize>(&self, phi: Pure, load: Pure) -> Pure {
+        if WITH & (LOCAL | WAVY) == 0 {
+            return self.coulomb;
+        }
+        let least =
+            self.asymmetric_coulomb.abs() + Pure::ZERO.when(self.stribeck.0 > 0.0, -self.stribeck);
+        (self.coulomb + self.level.here::<WITH>(phi, load)).clamp(least, Pure(f64::INFINITY))
+    }
+
     /// Dry friction while moving in a direction, without Stribeck's part.
     #[inline(always)]
     #[must_use]
-    pub fn kinetic<const RICH: bool>(&self, direction: Pure) -> Pure {
-        if !RICH {
-            return direction * self.coulomb;
+    pub(super) fn kinetic<const WITH: usize>(
+        &self,
+        direction: Pure,
+        phi: Pure,
+        load: Pure,
+    ) -> Pure {
+        let base = self.base::<WITH>(phi, load);
+        if WITH & LOCAL == 0 {
+            return direction * base;
         }
         let moving = motion(Pure::ZERO, Pure::ZERO, direction);
-        direction
-            * (self.coulomb + self.asymmetric_coulomb * one::<AsymmetricCoulomb>(&moving, 0.0))
+        direction * (base + self.asymmetric_coulomb * one::<AsymmetricCoulomb>(&moving, 0.0))
     }
 
-    /// The largest torque on either side that friction holds at rest.
+    /// What friction holds after a rest of so many seconds.
     #[inline(always)]
-    #[must_use]
-    pub fn held<const RICH: bool>(&self, direction: Pure) -> Pure {
-        if !RICH {
-            return self.coulomb + self.stiction;
+    pub(super) fn held<const WITH: usize>(&self, phi: Pure, load: Pure, rest_s: Pure) -> Held {
+        let base = self.base::<WITH>(phi, load);
+        let level = if WITH & CURVED == 0 {
+            base
+        } else {
+            base + self.stribeck
+        };
+        if WITH & LOCAL == 0 {
+            return Held {
+                middle: level + self.stiction,
+                difference: Pure::ZERO,
+            };
         }
-        self.coulomb + direction * self.asymmetric_coulomb + self.stribeck + self.stiction
+        Held {
+            middle: level + self.stiction + self.level.rested(rest_s),
+            difference: self.asymmetric_coulomb,
+        }
     }
 
     /// The torque of what depends on the speed in a curved way: Stribeck's part, drag, one-sided viscous friction.
@@ -312,6 +267,14 @@ impl OneMass<Pure> {
     }
 }
 
+/// The state of motion at an angle of the road wheel, the turning part turned by another, at rest.
+#[inline(always)]
+pub(super) fn at(position: Pure, turn_rad: Pure) -> Motion<Pure> {
+    let mut motion = motion(position, Pure::ZERO, Pure::ZERO);
+    motion.turn_rad = turn_rad;
+    motion
+}
+
 #[inline(always)]
 fn motion(position: Pure, speed: Pure, direction: Pure) -> Motion<Pure> {
     Motion {
@@ -330,7 +293,7 @@ fn motion(position: Pure, speed: Pure, direction: Pure) -> Motion<Pure> {
 
 /// The one basis value of a law.
 #[inline(always)]
-fn one<T: Law>(motion: &Motion<Pure>, inner: f64) -> Pure {
+pub(super) fn one<T: Law>(motion: &Motion<Pure>, inner: f64) -> Pure {
     let mut out = [Pure::ZERO];
     T::basis(motion, &[inner], &mut out);
     out[0]

@@ -51,6 +51,7 @@ impl Law for Cogging {
     };
     const COLUMNS: usize = 2;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let angle = motion.turn_rad * L::splat(inner[0]);
         out[0] = angle.sin();

@@ -46,6 +46,7 @@ impl Law for DeadZone {
     };
     const COLUMNS: usize = 1;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let a = L::splat(inner[0]);
         out[0] = motion.position - motion.position.clamp(-a, a);

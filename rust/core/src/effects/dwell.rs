@@ -44,6 +44,7 @@ impl Law for Dwell {
     const COLUMNS: usize = 1;
     const AT_REST: bool = true;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let grown = L::splat(1.0) - (motion.rest_s * L::splat(-1.0 / inner[0])).exp();
         out[0] = grown * motion.left_of_rest();

@@ -19,6 +19,9 @@ pub trait Lane:
     /// Exponential function.
     #[must_use]
     fn exp(self) -> Self;
+    /// Exponential function less 1, exact for small arguments too.
+    #[must_use]
+    fn exp_m1(self) -> Self;
     /// Sine, argument in radians.
     #[must_use]
     fn sin(self) -> Self;
@@ -39,6 +42,9 @@ impl Lane for f64 {
     }
     fn exp(self) -> Self {
         self.exp()
+    }
+    fn exp_m1(self) -> Self {
+        self.exp_m1()
     }
     fn sin(self) -> Self {
         self.sin()

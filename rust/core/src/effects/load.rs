@@ -33,6 +33,7 @@ impl Law for Load {
     };
     const COLUMNS: usize = 1;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
         out[0] = motion.load_n.abs();
     }

@@ -41,10 +41,20 @@ pub use law::{Channels, Contact, Effect, Law, Motion};
 
 pub(crate) use asymmetric_coulomb::AsymmetricCoulomb;
 pub(crate) use asymmetric_viscous::AsymmetricViscous;
+pub(crate) use cogging::Cogging;
+pub(crate) use dead_zone::DeadZone;
 pub(crate) use drag::Drag;
+pub(crate) use dwell::Dwell;
+pub(crate) use end_stop::EndStop;
 pub(crate) use hardening::Hardening;
+pub(crate) use load::Load;
+pub(crate) use once_per_rev::OncePerRev;
+pub(crate) use position_coulomb::PositionCoulomb;
+pub(crate) use presliding::dahl;
 pub(crate) use stiffness::Stiffness;
 pub(crate) use stribeck::Stribeck;
+pub(crate) use tight_spot::TightSpot;
+pub(crate) use twice_per_rev::TwicePerRev;
 pub(crate) use viscous::Viscous;
 
 use crate::Error;

@@ -43,6 +43,7 @@ impl Law for OncePerRev {
     };
     const COLUMNS: usize = 2;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
         out[0] = motion.turn_rad.sin();
         out[1] = motion.turn_rad.cos();

@@ -2,6 +2,13 @@
 
 use super::{Card, Contact, Grid, Kind, Lane, Law, Motion, Parameter, Role};
 
+/// What Dahl's law makes of a friction state over a `travel` in one direction, given in break-aways: the state
+/// approaches its `target` (the side of the motion, as a rule) by the exponential. Exact for any travel.
+#[inline]
+pub(crate) fn dahl<L: Lane>(state: L, target: L, travel: L) -> L {
+    state + (state - target) * (-travel.abs()).exp_m1()
+}
+
 /// The law of `presliding`.
 pub struct Presliding;
 

@@ -51,6 +51,7 @@ impl Law for TightSpot {
     };
     const COLUMNS: usize = 1;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, inner: &[f64], out: &mut [L]) {
         let away = (motion.position - L::splat(inner[0])) / L::splat(inner[1]);
         out[0] = (away * away * L::splat(-0.5)).exp();

@@ -43,6 +43,7 @@ impl Law for TwicePerRev {
     };
     const COLUMNS: usize = 2;
 
+    #[inline]
     fn basis<L: Lane>(motion: &Motion<L>, _inner: &[f64], out: &mut [L]) {
         let angle = motion.turn_rad * L::splat(2.0);
         out[0] = angle.sin();
