@@ -207,7 +207,7 @@ impl OneMass<f64> {
         })
     }
 
-    /// The values of a row, as [`OneMass::gather`] takes them: what divides is no longer 0, waves are sine and cosine.
+    /// The values of a row, as `gather` takes them: what divides is no longer 0, waves are sine and cosine.
     #[must_use]
     pub fn to_array(&self) -> [f64; PARAMETERS] {
         let mut row = [0.0; PARAMETERS];
