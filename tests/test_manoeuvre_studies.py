@@ -206,6 +206,7 @@ def test_freeplay_decides_under_an_angle_and_no_drive_is_dropped(angle):
         ({"ranges": {"body.colour": (0.0, 1.0)}}, "body.colour"),
         ({"ranges": {"body.mass_kg": (2.0, 1.0)}}, "range of body.mass_kg"),
         ({"samples": 8}, "samples"),
+        ({"samples": 100}, "no power of two"),
         ({"signal": [1.0, 2.0]}, "shape"),
     ],
 )

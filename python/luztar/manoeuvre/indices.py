@@ -68,7 +68,7 @@ def design(dimension: int, samples: int, seed: int) -> np.ndarray:
     ----------
     dimension : int
     samples : int
-        A power of two keeps the sequence balanced.
+        A power of two: the sequence is balanced then.
     seed : int
     """
     from scipy.stats import qmc

@@ -157,8 +157,8 @@ def sensitivity(
         tyres within 10 %, trail, column stiffness and damping within 30 %.
     signal : array_like, shape (parameters,), optional
         In the order of ``task.form.names``; the optimum for the task's own car where not given.
-    samples : int, >= 64
-        Rows of A and of B; a power of two is best.
+    samples : int, >= 64, a power of two
+        Rows of A and of B.
     seed, effort, journal, progress
         As :func:`robust`.
 
@@ -169,10 +169,17 @@ def sensitivity(
     Raises
     ------
     ParameterError
-        Unknown parameters, ranges that are empty, too few samples, a journal of another study.
+        Unknown parameters, empty ranges, too few samples or no power of two, a journal of another study.
     """
     seed = whole_number("seed", seed, 0, LARGEST_SEED)
     samples = whole_number("samples", samples, 64, 2**20)
+    if samples & (samples - 1):
+        below = 1 << (samples.bit_length() - 1)
+        raise ParameterError(
+            f"samples is {samples}, which is no power of two: Sobol's sequence would lose its balance",
+            "samples",
+            f"Give {below} or {2 * below}.",
+        )
     chosen = usual_ranges(task) if ranges is None else _checked(task, ranges)
     names = list(chosen)
     given = None if signal is None else vector("signal", np.asarray(signal))
