@@ -94,6 +94,16 @@ def test_difference_signals_are_differences_from_the_own_car(by_angle):
     assert np.abs(found["y_m"][2]).max() > 10.0 * np.abs(found["y_m"][1]).max()
 
 
+@pytest.mark.parametrize(("key", "most"), [("freeplay.gap_rad", 0.2), ("coulomb.level_nm", 8.1)])
+def test_difference_signals_are_continuous_in_freeplay_and_friction(angle, key, most):
+    def largest(cars):
+        drive = angle.drive([GOOD] * cars, {key: np.linspace(0.0, most, cars)})
+        return np.abs(np.diff(drive.y_m, axis=0)).max()
+
+    # Four times closer neighbours drive four times closer paths; a jump would stay.
+    assert largest(41) == pytest.approx(largest(11) / 4.0, rel=0.1)
+
+
 def test_results_are_json_and_print_themselves(by_angle):
     text = json.dumps(by_angle.to_dict(), allow_nan=False)
     assert json.loads(text)["pairs"][0]["on_all_cars"][2] is None
