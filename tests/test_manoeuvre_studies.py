@@ -100,8 +100,8 @@ def test_difference_signals_are_continuous_in_freeplay_and_friction(angle, key, 
         drive = angle.drive([GOOD] * cars, {key: np.linspace(0.0, most, cars)})
         return np.abs(np.diff(drive.y_m, axis=0)).max()
 
-    # Four times closer neighbours drive four times closer paths, once they are close enough to see the steepest place; a
-    # jump would stay.
+    # Four times closer neighbours drive four times closer paths, once they are close enough to see the steepest place;
+    # a jump would stay.
     assert largest(641) == pytest.approx(largest(161) / 4.0, rel=0.05)
 
 
