@@ -23,6 +23,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     lost = len(lines) // 2
     (here / "gap.csv").write_text("\n".join([*lines[:lost], *lines[lost + 60 :]]) + "\n")
     (here / "hole.csv").write_text("\n".join([*lines[:lost], f"{lines[lost].rsplit(',', 1)[0]},", *lines[lost + 1 :]]))
+    rows = [line.split(",") for line in lines]
+    flat = [[*r[:-1], f"{min(max(float(r[-1]), -0.8), 0.8)}"] for r in rows[1:]]
+    (here / "flat.csv").write_text("\n".join(",".join(r) for r in [rows[0], *flat]) + "\n")
     (here / "few.csv").write_text(rig_texts(strokes=4)[0])
     (here / "text.csv").write_text("not a measurement\n")
     motion = {"reach_deg": 60.0, "speed_deg_s": 30.0, "crossings": 2, "rate_hz": 100.0}
@@ -57,6 +60,9 @@ TABLE = [
     (2, "study run.csv.gz --held-out cut.csv.gz --model rig"),
     (2, "study gap.csv --model rig"),
     (2, "study hole.csv --model rig"),
+    (2, "study flat.csv --model rig"),
+    (2, "diagnose flat.csv --model rig"),
+    (0, "compare flat.csv --model rig"),
     (3, ""),
     (3, "fit turned1.csv --model rig"),
     (3, "study turned1.csv turned2.csv --model rig"),

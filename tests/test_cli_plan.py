@@ -18,5 +18,14 @@ def test_a_plan_can_be_written_as_a_page(tmp_path):
 
 def test_a_plan_without_sense_is_an_input_error():
     made = luztar("plan", "--angle", "-3", "--json")
-    assert made.code == 3 and made.json["error"]["where"] == "angle_deg"
+    assert made.code == 3 and made.json["error"]["where"] == "--angle"
     assert luztar("plan", "--speeds", "fast").code == 3
+
+
+def test_a_slip_of_the_pen_is_named_in_the_options_own_words_and_unit():
+    wide = luztar("plan", "--angle", "1e6", "--json").json["error"]
+    assert wide["where"] == "--angle" and wide["kind"].startswith("1e+06 deg")
+    assert wide["remedy"] == "Give a number from 2.5 to 3600 deg."
+    assert luztar("plan", "--structure", "axis", "--angle", "10", "--json").json["error"]["remedy"] == (
+        "Give travel_m instead."
+    )

@@ -81,3 +81,28 @@ def test_a_model_that_is_not_whole_is_refused(model):
     done = luztar("simulate", model, "--sine", 1, 1)
     assert done.code == 3 and "steering.inertia_kg_m2" in done.err
     assert luztar("simulate", "rig", "--sine", 1, 1).code == 3
+
+
+def test_a_mechanism_of_several_bodies_runs_from_its_file(tmp_path):
+    from luztar.mechanism import steering_mechanism
+
+    path = tmp_path / "mechanism.toml"
+    steering_mechanism().save(path)
+    out = tmp_path / "out.csv"
+    done = luztar("simulate", path, "--sine", 1, 0.5, "--seconds", 2, "--out", out, "--json")
+    assert done.code == 0, done.err
+    (run,) = done.json["runs"]
+    assert run["balanced"] and run["samples"] == 1001 and run["bodies"]["rack"]["unit"] == "m"
+    assert {"column_friction", "left_king_pin", "gear"} <= {e["element"] for e in run["events"]}
+    table = np.genfromtxt(out, delimiter=",", names=True)
+    assert {"time_s", "handwheel_rad", "rack_m", "rack_m_per_s", "hand_torque"} <= set(table.dtype.names)
+    assert table["rack_m"].max() == pytest.approx(run["bodies"]["rack"]["max"], rel=1e-8)
+    done = luztar("simulate", path, "--sine", 1, 0.5, "--seconds", 2)
+    assert done.code == 0 and done.out.startswith("sine: steering mechanism: 2 s")
+
+
+def test_a_mechanism_that_makes_no_sense_is_refused_with_file_and_part(tmp_path):
+    path = tmp_path / "mechanism.toml"
+    path.write_text('schema = 1\nstructure = "mechanism"\n[bodies.one]\ninertia_kg_m2 = -1.0\n')
+    done = luztar("simulate", path, "--sine", 1, 0.5)
+    assert done.code == 3 and "mechanism.toml, one: its inertia is -1" in done.err

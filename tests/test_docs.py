@@ -55,7 +55,8 @@ def test_model_files_on_a_page_load(page: Path, tmp_path: Path) -> None:
         if "structure" in block:
             path = tmp_path / "model.toml"
             path.write_text(block, encoding="utf-8")
-            luztar.Model.load(path)
+            several = 'structure = "mechanism"' in block
+            luztar.mechanism.Mechanism.load(path) if several else luztar.Model.load(path)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
@@ -95,3 +96,9 @@ def test_the_model_file_of_the_examples_is_the_rig_with_a_start_value() -> None:
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda p: p.name)
 def test_an_example_says_what_it_does(path: Path) -> None:
     assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
+
+
+def test_the_mechanism_of_the_examples_is_the_papers_with_static_friction() -> None:
+    from luztar.mechanism import Mechanism, steering_mechanism
+
+    assert Mechanism.load(EXAMPLES / "steering_mechanism.toml") == steering_mechanism(king_pin_static_nm=6.0)

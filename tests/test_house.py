@@ -40,6 +40,7 @@ MAY_IMPORT = {
     "model": FOUNDATION,
     "effects": FOUNDATION | {"model"},
     "dynamics": FOUNDATION,
+    "mechanism": FOUNDATION,
     "projections": FOUNDATION,
     "vehicle": FOUNDATION | {"dynamics"},
     "manoeuvre": FOUNDATION | {"dynamics", "vehicle"},

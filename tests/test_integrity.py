@@ -287,8 +287,24 @@ def test_a_torque_cut_off_at_its_range_is_clipped():
     torque += 4.0 * np.exp(-(((time_s - 8.0) / 0.1) ** 2))
     torque = np.minimum(torque, 1.5)
     found = luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings
-    assert {f.kind for f in found} == {"clipped"}
+    assert [f.kind for f in found] == ["clipped"]
     assert all(f.doubtful and 7.7 < f.from_s < 8.3 for f in found)
+
+
+def test_a_channel_that_clips_again_and_again_has_one_finding_with_its_places():
+    time_s, angle, torque = noisy()
+    torque = np.clip(1.2 * np.cos(5.0 * time_s) + torque - torque.mean(), -1.4, 1.4)
+    (finding,) = luztar.Run(time=time_s, angle=angle, torque=torque, units=SI).integrity.findings
+    assert (finding.kind, finding.channel, finding.doubtful) == ("clipped", "torque", True)
+    assert "its extremes -1.4 and 1.4" in finding.text and "% of the record" in finding.text
+    assert finding.text.count(" s") < 12  # the first places, not all of them
+    at = np.abs(torque) == 1.4
+    spoken = sum(((time_s >= a) & (time_s <= b)).sum() for a, b in finding.places)
+    assert len(finding.places) == finding.to_dict()["count"] > 20
+    # Stretches of ten samples and more; what is shorter at the extreme may be noise.
+    assert 0.5 * at.sum() < spoken <= at.sum()
+    first, last = finding.places[0], finding.places[1]
+    assert finding.concerns(*first) and not finding.concerns(first[1] + 1e-6, last[0] - 1e-6)
 
 
 def test_a_computed_torque_without_noise_is_not_called_stuck():

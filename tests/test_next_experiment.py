@@ -9,7 +9,8 @@ import luztar
 from advised_trials import FOLLOWED, USUAL, measured
 from generators.axis import simulate_axis_set
 from luztar.diagnosis.experiment import experiment_for
-from luztar.planning.advise import advice
+from luztar.planning.advise import Advice, advice
+from luztar.planning.separate import Ranked
 from luztar.planning.trials import axis_trials, rig_trials
 
 # (rival, hidden effect with a size at which the usual strokes leave a doubt or nearly so)
@@ -95,3 +96,44 @@ def test_every_test_of_the_list_can_be_followed():
         position = trial.make(0.01, 1)
         assert 0.3 < position.size / 6000.0 < 5.0, trial.name  # minutes
         assert (position == trial.make(0.01, 1)).all()
+
+
+def ranked(apart, minutes=1.0):
+    return Ranked(rig_trials()[0], minutes, apart)
+
+
+def test_a_test_weaker_than_the_strokes_recorded_is_never_advised():
+    weaker = Advice("stribeck", ("drag",), (ranked(5.7),), 13.0, 3)
+    assert not weaker.better and not weaker.decides
+    said = weaker.text("rig")
+    assert rig_trials()[0].text not in said and "No test of the list" in said
+    # Twice the standard errors need four times the runs.
+    assert "9 more runs like them make it 26" in said
+    stronger = Advice("stribeck", ("drag",), (ranked(8.0),), 13.0, 3)
+    assert stronger.decides and "three runs" in stronger.text("rig") and "14 standard errors" in stronger.text("rig")
+
+
+def test_repeats_are_counted_up_to_what_tells_apart():
+    near = Advice("stribeck", ("drag",), (ranked(0.5),), 3.0, 3)
+    assert near.repeats == 1 and "one more run like them make it 3.5" in near.text("rig")
+    far = Advice("stribeck", ("drag",), (ranked(0.01),), 0.3, 3)
+    assert far.repeats is None and "Repeat those" not in far.text("rig")
+    assert Advice("stribeck", ("drag",), (ranked(0.0),), 0.0, 3).repeats is None
+
+
+def test_a_ranking_puts_tests_that_tell_less_than_asked_last():
+    hidden = {"stribeck": {"extra_nm": 0.1, "speed_rad_s": 0.1}}
+    fitted = luztar.fit(luztar.Model.rig() + "stribeck", measured(hidden, USUAL, seed=5))
+    made = advice(fitted, fitted.state, "stribeck", ("drag",))
+    above = made.now / math.sqrt(3.0)
+    told = [r.apart > above for r in made.ranking]
+    assert told == sorted(told, reverse=True)
+    assert made.better == told[0]
+
+
+def test_a_study_prints_the_tests_that_its_looks_advise():
+    study = luztar.study(luztar.Model.rig(), measured(PAIRS[0][1], USUAL, seed=5), max_effects=0)
+    assert study.last.verdict == "one_of"
+    assert f"next: {study.last.next_experiment.text}" in str(study).splitlines()
+    short = luztar.study(luztar.Model.rig(), measured({}, [{**USUAL[0], "strokes": 3}], seed=5))
+    assert "next: Record three runs of at least six strokes each" in str(short)

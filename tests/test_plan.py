@@ -175,9 +175,46 @@ def test_minutes_take_the_place_of_strokes_and_a_ladder_that_of_a_range():
         {"strokes": 1000},
         {"encoder_deg": math.nan},
         {"minutes": -2.0},
+        {"minutes": 1e9},
+        {"friction": -1.0},
+        {"angle_deg": 1e6},
+        {"angle_deg": 0.01},
+        {"speed": (0.0, 10.0)},
+        {"speed": (5.0,)},
+        {"speed": "fast"},
+        {"speed": (0.01, 0.02)},
+        {"speeds": (3.0, math.inf)},
+        {"speeds": 3.0},
+        {"noise": 1e200},
+        {"noise": -0.1},
+        {"noise_time_s": -1.0},
+        {"noise_time_s": math.nan},
+        {"rate_hz": "fast"},
+        {"runs": 2.5},
+        {"strokes": 1},
+        {"encoder_deg": 30.0},
+        {"step_m": 1e-6},
+        {"travel_m": 0.2},
+        {"seed": -1},
+        {"model": "axis", "encoder_deg": 0.02},
+        {"model": "axis", "angle_deg": 50.0},
+        {"model": "axis", "travel_m": 1e-5, "step_m": 1e-6},
+        {"model": "axis", "speed": (0.04, 0.0)},
     ],
 )
-def test_what_makes_no_test_is_refused_by_name(options):
+def test_what_makes_no_test_is_refused_by_name_and_remedy(options):
     with pytest.raises(ParameterError) as caught:
         luztar.plan(**options)
-    assert caught.value.where in options
+    assert caught.value.where in options and caught.value.remedy
+    assert "rad" not in str(caught.value)  # what was given in degrees is spoken of in degrees
+
+
+def test_one_long_run_is_a_test_and_one_stroke_is_not():
+    assert luztar.plan(runs=1, strokes=6, speeds=(20.0,)).strokes >= 6
+    with pytest.raises(ParameterError, match="6 strokes over all runs"):
+        luztar.plan(runs=5, strokes=1)
+
+
+def test_friction_without_level_is_a_mechanism_too():
+    plan = luztar.plan(friction=0.0)
+    assert plan.size("stiffness").size == pytest.approx(luztar.plan().size("stiffness").size, rel=0.02)

@@ -10,7 +10,7 @@ import pytest
 import luztar
 import tb038_records
 from generators.rig import simulate_rig_set
-from luztar.errors import LuztarError, MeasurementError
+from luztar.errors import DoubtfulError, LuztarError, MeasurementError
 from luztar.model.model import Comparison
 
 RIG = luztar.Model.rig()
@@ -138,3 +138,44 @@ def test_errors_of_the_core_have_a_place_and_a_remedy() -> None:
         with pytest.raises(LuztarError) as caught:
             call()
         assert caught.value.kind and caught.value.where and caught.value.remedy, repr(caught.value)
+
+
+def clipped_set(level_nm: float | None, name: str = "mine.csv") -> list[luztar.Run]:
+    """Runs of the independent generator whose torque amplifier saturates in the first of them."""
+    runs = []
+    for number, r in enumerate(simulate_rig_set({"stribeck": {"extra_nm": 0.5, "speed_rad_s": 0.1}}, runs=3, seed=4)):
+        torque = r.torque_nm if level_nm is None or number else np.clip(r.torque_nm, -level_nm, level_nm)
+        runs.append(luztar.Run(time=r.time_s, angle=r.angle_rad, torque=torque, units=UNITS, name=f"{number}{name}"))
+    return runs
+
+
+UNITS = {"angle": "rad", "torque": "Nm", "time": "s"}
+
+
+LOOKS = {"study": lambda runs: luztar.study(RIG, runs), "diagnose": lambda runs: luztar.diagnose(luztar.fit(RIG, runs))}
+
+
+@pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS)
+def test_nothing_is_named_from_a_clipped_torque(look) -> None:
+    with pytest.raises(DoubtfulError) as caught:
+        look(clipped_set(0.9))
+    assert caught.value.where == "0mine.csv"
+    assert "-0.9 and 0.9 Nm" in caught.value.kind and "% of the samples compared" in caught.value.kind
+
+
+def test_a_fit_of_a_clipped_torque_says_so_and_stands() -> None:
+    comparison = luztar.compare(luztar.fit(RIG, clipped_set(0.9)))
+    (flag,) = [f for f in comparison.fit.flags if f.kind == "clipped"]
+    assert flag.text.startswith("0mine.csv") and flag.text in str(comparison)
+    assert flag.to_dict() in comparison.to_dict()["flags"]
+
+
+def test_one_clipped_peak_is_a_trifle() -> None:
+    runs = clipped_set(None)
+    torque = np.array(runs[0]["torque"])
+    at = int(torque.argmax())
+    torque[at - 7 : at + 8] = torque.max() + 0.01
+    time = runs[0].time_s
+    one = luztar.Run(time=time, angle=runs[0]["angle"], torque=torque, units=UNITS, name="0mine.csv")
+    assert [f.kind for f in one.integrity.findings] == ["clipped"]
+    assert not any(f.kind == "clipped" for f in luztar.fit(RIG, [one, *runs[1:]]).flags)

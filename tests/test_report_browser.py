@@ -66,6 +66,19 @@ def test_it_draws_every_figure_without_a_word_or_a_request(browser: Any, report:
     page.close()
 
 
+def test_a_plan_and_a_card_draw_their_picture(browser: Any, tmp_path: Path) -> None:
+    from luztar.cli import main
+
+    luztar.plan().report(tmp_path / "plan.html")
+    assert main(["explain", "stribeck", "--report", str(tmp_path / "card.html")]) == 0
+    for name in ("plan.html", "card.html"):
+        page, said, asked = opened(browser, tmp_path / name)
+        assert said == [] and asked == [(tmp_path / name).as_uri()]
+        assert page.locator("[data-figure] svg.main-svg").count() >= 1
+        assert (tmp_path / name).stat().st_size < 2_500_000
+        page.close()
+
+
 def test_hostile_names_are_text(browser: Any, report: Path) -> None:
     page, said, _ = opened(browser, report)
     assert page.locator("img[onerror], a[href*='example.com']").count() == 0

@@ -327,3 +327,22 @@ def test_no_damage_turns_a_failing_run_into_a_pass(kind, where, width, level):
         return
     for v in tb038.evaluate([damaged]).verifications:
         assert v.verdict in ("fail", "inconclusive")
+
+
+def test_a_torque_of_pure_noise_is_not_called_reversed():
+    for seed in range(20):
+        runs = [records.run(3 * seed + k, level_nm=0.0, noise_nm=0.0003) for k in range(3)]
+        assert tb038.evaluate(runs).verdict == "fail"
+
+
+def test_friction_that_is_clearly_negative_is_reversed_whatever_its_ripple():
+    for ripple_nm in (0.0, 0.5):
+        with pytest.raises(MeasurementError, match="torque sign reversed"):
+            tb038.evaluate(records.three(level_nm=-0.5, ripple_nm=ripple_nm))
+
+
+def test_many_crossings_that_are_too_fast_are_one_finding_with_the_worst():
+    fast = records.run(1, motion={"crossings": 8, "speed_deg_s": 46.0})
+    found = tb038.evaluate([fast]).verifications[0]
+    assert found.why.count("deg/s inside the window") == 1
+    assert "(the worst of 4 such crossings)" in found.why

@@ -2,6 +2,7 @@ import math
 
 import pytest
 
+import luztar
 from luztar.errors import MeasurementError
 from luztar.measurement import units
 
@@ -67,3 +68,32 @@ def test_every_quantity_has_a_symbol_that_is_its_own_unit():
 def test_no_spelling_stands_in_the_table_twice():
     spellings = [spelling for *_, row in units._TABLE for spelling in row.split()]
     assert len(spellings) == len(set(spellings))
+
+
+def test_an_unknown_unit_is_named_with_file_column_what_is_known_and_the_option(tmp_path):
+    path = tmp_path / "gon.csv"
+    path.write_text("time_s,angle [gon],torque [Nm]\n0,1,2\n1,2,3\n2,3,4\n")
+    with pytest.raises(MeasurementError) as caught:
+        luztar.read(path)
+    said = str(caught.value)
+    for words in (
+        "gon.csv",
+        "'angle [gon]'",
+        "unknown unit 'gon' for angle",
+        "rad, mrad, deg, rev",
+        "--unit angle=rad",
+    ):
+        assert words in said
+    # The option it names helps, and leaves a word of what was done.
+    run = luztar.read(path, units={"angle": "deg"})[0]
+    assert run["angle"][0] == pytest.approx(math.radians(1.0), rel=1e-15)
+    assert any("'gon', is not known" in f.text for f in run.integrity.findings)
+
+
+def test_a_channel_name_with_something_behind_it_is_offered_with_map_and_unit(tmp_path):
+    path = tmp_path / "xy.csv"
+    path.write_text("time_s,angle_deg,torque_Xy\n0,1,2\n1,2,3\n2,3,4\n")
+    with pytest.raises(MeasurementError, match='--map torque="torque_Xy" --unit torque=Nm'):
+        luztar.read(path)[0]["torque"]
+    run = luztar.read(path, map={"torque": "torque_Xy"}, units={"torque": "Nm"})[0]
+    assert run["torque"][2] == 4.0

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from . import effects as effects
     from . import manoeuvre as manoeuvre
     from . import measurement as measurement
+    from . import mechanism as mechanism
     from . import model as model
     from . import projections as projections
     from . import regression as regression
@@ -45,6 +46,7 @@ _LAZY: dict[str, str] = {
     "fit": "diagnosis:fit",
     "manoeuvre": "manoeuvre",
     "measurement": "measurement",
+    "mechanism": "mechanism",
     "model": "model",
     "plan": "planning:plan",
     "projections": "projections",

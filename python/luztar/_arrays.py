@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+import reprlib
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ def vector(name: str, values: Any, *, minimum: int = 1, finite: bool = True) -> 
     ParameterError
         Names the argument and, for NaN, the first positions.
     """
-    array = _real(name, values)
+    array = real(name, values)
     if array.ndim != 1:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give a one-dimensional array.")
     if array.size < minimum:
@@ -48,7 +49,7 @@ def integers(name: str, values: Any) -> np.ndarray:
     ParameterError
         Not whole numbers (floats are not, whatever their value), not one-dimensional, or beyond 32 bits.
     """
-    array = _real(name, values)
+    array = real(name, values)
     if array.ndim != 1 or (array.dtype.kind not in "iu" and array.size):
         raise ParameterError(f"{name} is {array.dtype} of the shape {array.shape}", name, "Give whole numbers.")
     if array.size and not (-(2**31) <= int(array.min()) and int(array.max()) < 2**31):
@@ -64,7 +65,7 @@ def rows(name: str, values: Any, columns: int | None = None) -> np.ndarray:
     ParameterError
         Not real, not of two dimensions, or of another number of columns.
     """
-    array = _real(name, values)
+    array = real(name, values)
     if array.ndim == 1 and columns in (None, 1):
         array = array[:, np.newaxis]
     if array.ndim != 2 or (columns is not None and array.shape[1] != columns):
@@ -81,7 +82,7 @@ def rows_along(name: str, values: Any, axis: int, *, finite: bool = True) -> tup
     ParameterError
         As :func:`vector`, or an axis that the array does not have.
     """
-    array = _real(name, values)
+    array = real(name, values)
     if array.ndim == 0 or array.size == 0:
         raise ParameterError(f"{name} has the shape {array.shape}", name, "Give at least one sample.")
     axis = whole_number("axis", axis, -array.ndim, array.ndim - 1)
@@ -90,6 +91,44 @@ def rows_along(name: str, values: Any, axis: int, *, finite: bool = True) -> tup
     array = np.moveaxis(array, axis, -1)
     rows = np.require(array, np.float64, ["C", "A"]).reshape(-1, array.shape[-1])
     return rows, array.shape
+
+
+def weights(values: Any, y: Any, needed: int) -> np.ndarray | None:
+    """Return the weights of points, or None where none are given; whether they are in range is for the callee to say.
+
+    Parameters
+    ----------
+    values : array_like, shape (points,), or None
+    y : array_like, shape (points,)
+    needed : int
+        Points whose weight must be above 0.
+
+    Raises
+    ------
+    ParameterError
+        Not a vector, or too few weights above 0.
+    """
+    if values is None:
+        return None
+    made = vector("weights", values, minimum=0)
+    points, counted = real("y", y).size, int(np.count_nonzero(made))
+    if made.size == points >= needed > counted:
+        kind = f"weights leaves {counted} of {points} points" if counted else f"weights is 0 for all {points} points"
+        raise ParameterError(kind, "weights", f"Give at least {needed} points a weight above 0.")
+    return made
+
+
+def pair(name: str, value: Any) -> tuple[float, float]:
+    """Return two real numbers.
+
+    Raises
+    ------
+    ParameterError
+        Not two of them.
+    """
+    if isinstance(value, str) or not hasattr(value, "__iter__") or len(both := tuple(value)) != 2:
+        raise ParameterError(f"{name} is {reprlib.repr(value)}", name, "Give two numbers.")
+    return number(name, both[0]), number(name, both[1])
 
 
 def number(name: str, value: Any) -> float:
@@ -102,7 +141,7 @@ def number(name: str, value: Any) -> float:
     """
     if isinstance(value, numbers.Real):
         return float(value)
-    raise ParameterError(f"{name} is {value!r}", name, "Give a real number.")
+    raise ParameterError(f"{name} is {reprlib.repr(value)}", name, "Give a real number.")
 
 
 def whole_number(name: str, value: Any, low: int, high: int) -> int:
@@ -135,7 +174,14 @@ def writable(name: str, out: Any, shape: tuple[int, ...], *, contiguous: bool = 
     return out
 
 
-def _real(name: str, values: Any) -> np.ndarray:
+def real(name: str, values: Any) -> np.ndarray:
+    """Return ``values`` as an array of real numbers, whatever its shape.
+
+    Raises
+    ------
+    ParameterError
+        Masked, ragged, or of a type that is no real number.
+    """
     if isinstance(values, np.ma.MaskedArray):
         raise ParameterError(f"{name} is a masked array", name, "Fill or drop the masked values first.")
     try:

@@ -13,6 +13,8 @@ __all__ = [
     "FixedLag",
     "LineSums",
     "LinearSums",
+    "Mechanism",
+    "MechanismStepper",
     "Moments",
     "PolynomialSums",
     "QuantileSketch",
@@ -33,6 +35,7 @@ __all__ = [
     "fit_linear",
     "fit_polynomial",
     "held_out",
+    "hold_or_slide",
     "huber",
     "instruction_sets",
     "lane_columns",
@@ -508,6 +511,102 @@ def trace_steering(
     list[tuple[float, str, float]],
     list[tuple[str, float]],
 ]: ...
+
+# mechanism
+
+_End = tuple[str, float]
+_ElementParts = tuple[str, str, _End, _End, Sequence[float], _End, Sequence[tuple[float, float]]]
+_EnergyParts = tuple[list[float], list[float], list[float], list[float]]
+
+@final
+class Mechanism:
+    def __new__(
+        cls,
+        bodies: Sequence[tuple[str, float]],
+        driven: Sequence[str],
+        loads: Sequence[tuple[str, str]],
+        elements: Sequence[_ElementParts],
+    ) -> Mechanism: ...
+    def parameters(self) -> list[tuple[str, str, float]]: ...
+    def longest_step(self) -> tuple[float, int | None]: ...
+    def trace(
+        self,
+        channels: NDArray[np.float64],
+        start: NDArray[np.float64],
+        start_speed: NDArray[np.float64],
+        *,
+        sample_rate_hz: float,
+        substeps: int,
+        gauss_seidel: bool,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        list[int],
+        NDArray[np.int8],
+        NDArray[np.bool_],
+        list[tuple[float, int, str, float]],
+        int,
+        _EnergyParts,
+    ]: ...
+    def simulate(
+        self,
+        values: NDArray[np.float64],
+        channels: NDArray[np.float64],
+        start: NDArray[np.float64],
+        start_speed: NDArray[np.float64],
+        *,
+        first: int,
+        sample_rate_hz: float,
+        substeps: int,
+        place: NDArray[np.float64],
+        speed: NDArray[np.float64],
+    ) -> None: ...
+    def summarise(
+        self,
+        values: NDArray[np.float64],
+        channels: NDArray[np.float64],
+        start: NDArray[np.float64],
+        start_speed: NDArray[np.float64],
+        *,
+        first: int,
+        sample_rate_hz: float,
+        substeps: int,
+        out: NDArray[np.float64],
+    ) -> None: ...
+    @staticmethod
+    def summary_names() -> list[str]: ...
+
+@final
+class MechanismStepper:
+    def __new__(
+        cls,
+        mechanism: Mechanism,
+        step_s: float,
+        substeps: int,
+        start: Sequence[float],
+        start_speed: Sequence[float],
+        channels: Sequence[float],
+    ) -> MechanismStepper: ...
+    def step(self, channels: NDArray[np.float64], place: NDArray[np.float64], speed: NDArray[np.float64]) -> None: ...
+    def read_into(self, place: NDArray[np.float64], speed: NDArray[np.float64]) -> None: ...
+    @property
+    def time_s(self) -> float: ...
+    def modes(self) -> list[int]: ...
+    def torques_into(self, torque: NDArray[np.float64]) -> None: ...
+    def copy(self) -> MechanismStepper: ...
+    def state(self) -> tuple[list[int], list[float]]: ...
+    def restore(self, integers: Sequence[int], numbers: Sequence[float]) -> None: ...
+
+def hold_or_slide(
+    matrix: NDArray[np.float64],
+    free: NDArray[np.float64],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    gauss_seidel: bool,
+) -> tuple[list[float], list[float], int, int, bool]: ...
+
+# oracle
 
 _Signal = tuple[_Floats, _Floats, _Floats]
 _Exact = tuple[_Floats, _Floats, list[tuple[float, str, int, int, float]]]

@@ -9,6 +9,17 @@ from .errors import ParameterError
 _SCHEMA = 1
 
 
+def same_kind(other: Any, kind: type) -> None:
+    """Refuse to merge with an object of another kind.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if not isinstance(other, kind):
+        raise ParameterError(f"other is of the type {type(other).__name__}", "other", f"Give another {kind.__name__}.")
+
+
 class Stream:
     """Adds copies and stored states to a class of the core that has ``state()`` and ``restore()``."""
 

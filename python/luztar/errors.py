@@ -25,7 +25,9 @@ class LuztarError(Exception):
         super().__init__(kind, where, remedy)
 
     def __str__(self) -> str:
-        text = f"{self.where}: {self.kind}" if self.where else self.kind
+        # "x: x is 3" would say it twice.
+        named = not self.where or f"{self.kind} ".startswith(f"{self.where} ")
+        text = self.kind if named else f"{self.where}: {self.kind}"
         return f"{text}. {self.remedy}" if self.remedy else text
 
     def to_dict(self) -> dict[str, str]:
@@ -39,6 +41,10 @@ class ParameterError(LuztarError, ValueError):
 
 class MeasurementError(LuztarError, ValueError):
     """A file or table that cannot be read as a measurement."""
+
+
+class DoubtfulError(MeasurementError):
+    """A measurement that can be read and compared, but from which nothing may be concluded."""
 
 
 class ModelError(LuztarError, ValueError):

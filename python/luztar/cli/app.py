@@ -289,7 +289,9 @@ def plan(
 
 @app.command()
 def simulate(
-    model: Annotated[str, typer.Argument(metavar="MODEL", help="A steering model with every parameter given.")],
+    model: Annotated[
+        str, typer.Argument(metavar="MODEL", help="A steering model with every parameter given, or a mechanism.")
+    ],
     runs: Annotated[
         list[str] | None, typer.Argument(metavar="RUN", help="Run files: their handwheel drives the model.")
     ] = None,
@@ -317,6 +319,8 @@ def simulate(
     debug: Debug = False,
 ) -> int:
     """Run a steering model: handwheel in, road wheel out.
+
+    A mechanism of several bodies runs along its handwheel, or along its first driven node or load.
 
     Prints the events (stick, slip, reversal, contact, release) and where the energy went; with --monte-carlo, how what
     was kept of many runs is spread.

@@ -66,8 +66,6 @@ def _bounds(low: float, high: float) -> str:
 
 def write_card(path: str, card: Card) -> None:
     """Write a card with the picture of its effect as one HTML page."""
-    from html import escape
-
     from ..errors import ModelError
     from ..planning.looks import look
     from ..report.leaf import write_leaf
@@ -75,7 +73,7 @@ def write_card(path: str, card: Card) -> None:
 
     check_place(path)
     try:
-        picture = look(card.name).figure().to_html(full_html=False, include_plotlyjs=True)
+        figure, instead = look(card.name).figure(), "This figure is drawn by the browser."
     except ModelError as error:
-        picture = f"<p>{escape(str(error))}</p>"
-    written(path, lambda: write_leaf(path, card.title, card_text(card), picture))
+        figure, instead = None, str(error)
+    written(path, lambda: write_leaf(path, card.title, card_text(card), figure, instead))

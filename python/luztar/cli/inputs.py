@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import LuztarError, MeasurementError, ModelError, ParameterError
+from ..errors import DoubtfulError, LuztarError, MeasurementError, ModelError, ParameterError
 from . import exits
 from .output import tell
 
@@ -153,7 +153,9 @@ def find_model(text: str, band_hz: float | None = None, add: Sequence[str] = ())
 
 
 def unreadable(error: LuztarError, runs: Sequence[Run], model: Model) -> LuztarError:
-    """Return the error as :class:`UnreadablePart` where a part of a run is the reason, else as it is."""
+    """Return the error as :class:`UnreadablePart` where a part of a run or doubt about it is the reason."""
+    if isinstance(error, DoubtfulError):
+        return UnreadablePart(error.kind, error.where, error.remedy)
     if not isinstance(error, MeasurementError | ParameterError):
         return error
     channels = (None, "time", model.structure.motion, model.structure.effort)

@@ -6,11 +6,15 @@ import json
 import math
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ..measurement import Run
+
+# More findings of one kind than this are shown by their first ones.
+MOST_ALIKE, SHOWN_ALIKE = 3, 2
 
 
 def say(result: object) -> None:
@@ -26,7 +30,8 @@ def tell(text: str) -> None:
 
 def say_error(kind: str, where: str, remedy: str) -> None:
     """Print an error for a reader: the place and what is wrong, then what to do."""
-    tell(f"error: {f'{where}: ' if where else ''}{kind.rstrip('.')}.")
+    named = not where or kind.startswith(f"{where} ")
+    tell(f"error: {'' if named else f'{where}: '}{kind.rstrip('.')}.")
     if remedy:
         tell(f"  {remedy}")
 
@@ -65,12 +70,23 @@ def plain(value: Any) -> Any:
 
 
 def finding_lines(runs: Iterable[Run]) -> list[str]:
-    """Return one line per integrity finding; an exclamation mark stands before those that cast doubt."""
-    return [
-        f"  {'!' if finding.doubtful else '-'} {run.name}: {finding.text}"
-        for run in runs
-        for finding in run.integrity.findings
-    ]
+    """Return the integrity findings of runs in lines; an exclamation mark stands before those that cast doubt.
+
+    Of one kind and channel of a run the first few are shown and the others counted.
+    """
+    lines = []
+    for run in runs:
+        alike = Counter((f.kind, f.channel, f.doubtful) for f in run.integrity.findings if f.kind != "note")
+        shown: Counter[tuple[str, str | None, bool]] = Counter()
+        for finding in run.integrity.findings:
+            key = (finding.kind, finding.channel, finding.doubtful)
+            shown[key] += 1
+            if alike[key] > MOST_ALIKE and shown[key] > SHOWN_ALIKE:
+                continue
+            more = alike[key] - SHOWN_ALIKE if alike[key] > MOST_ALIKE and shown[key] == SHOWN_ALIKE else 0
+            rest = f" (and {more} more of this kind)" if more else ""
+            lines.append(f"  {'!' if finding.doubtful else '-'} {run.name}: {finding.text}{rest}")
+    return lines
 
 
 def show(result: Any, runs: Iterable[Run], json_wanted: bool) -> None:

@@ -30,11 +30,21 @@ def run_plan(structure: str, speeds: str | None, json: bool, report: str | None,
 
     check_place(report)
     given = {k: v for k, v in options.items() if v is not None}
-    result = plan(find_model(structure, None, ()), speeds=_numbers(speeds), **given)
+    model = find_model(structure, None, ())
+    try:
+        result = plan(model, speeds=_numbers(speeds), **given)
+    except ParameterError as error:
+        raise ParameterError(error.kind, _option(error.where), error.remedy) from None
     if report is not None:
         written(report, lambda: result.report(report))
     say(result.to_dict() if json else result)
     return exits.DONE
+
+
+def _option(name: str) -> str:
+    """Return what a value is called on the command line."""
+    short = {"angle_deg": "angle", "rate_hz": "rate"}.get(name, name)
+    return short if short.startswith("--") else f"--{short.replace('_', '-')}"
 
 
 def _numbers(text: str | None) -> tuple[float, ...]:

@@ -32,7 +32,18 @@ def run_simulate(
 ) -> int:
     """Simulate a model along the handwheel of runs, or along a sine, and print what happened."""
     from ..freerun.run_model import parameters_given, run_model
+    from .simulate_mechanism import find_mechanism, simulate_mechanism
 
+    mechanism = find_mechanism(model)
+    if mechanism is not None:
+        for option, value in (("--report", report), ("--monte-carlo", study)):
+            if value is not None:
+                raise ParameterError(
+                    "a mechanism of several bodies has none", option, "Use luztar.mechanism in Python."
+                )
+        drives = _drives(runs, sine, seconds, rate, mapped, units, resample)
+        places = _places(out, [name for name, *_ in drives], [model, *runs])
+        return simulate_mechanism(mechanism, drives, places, json)
     check_place(report, [model, *runs])
     if study is not None:
         if report is not None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from .candidates import Candidate, baseline, gain, try_all
 from .chance import p_value_floor
+from .clipped import require_trustworthy
 from .detect import detection
 from .experiment import Experiment, next_experiment
 from .fit import Fit, predict
@@ -177,6 +178,11 @@ def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, in
         evidence for another one.
     progress : callable, optional
         Called with (done, total).
+
+    Raises
+    ------
+    DoubtfulError
+        The effort of a run is clipped in more than a thousandth of the samples compared.
     """
     fitted = given_fit("diagnose", fitted)
     if fitted.model.structure.is_free:
@@ -185,6 +191,7 @@ def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, in
 
         assert isinstance(fitted, FreeFit)
         return diagnose_free(fitted, progress=progress)
+    require_trustworthy(fitted.runs)
     found, features = try_all(fitted, progress)
     before = baseline(fitted).losses
     gains = np.column_stack([before - c.search.losses for c in found]) if found else None

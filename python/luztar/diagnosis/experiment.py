@@ -106,7 +106,7 @@ def _alike(fitted: Fit, name: str, judged: Judgement, found: Sequence[Candidate]
 def _experiment(fitted: Fit, state: State, name: str, rivals: Sequence[str], *, alone: bool) -> Experiment | None:
     if not rivals:
         return None
-    from ..planning.advise import SETTLED, advice
+    from ..planning.advise import SETTLED, TOLD_APART, advice
 
     structure = fitted.model.structure_name
     try:
@@ -117,7 +117,8 @@ def _experiment(fitted: Fit, state: State, name: str, rivals: Sequence[str], *, 
     if found is None:
         titles = " from ".join(card(n, structure).title for n in (name, rivals[0]))
         return Experiment(f"Repeat the strokes under two clearly different loads, to tell {titles}.", (name, *rivals))
-    if alone and found.now > SETTLED:
+    if alone and (found.now > SETTLED or (not found.better and found.now >= TOLD_APART)):
+        # Nothing is open that another test would tell better than the strokes recorded.
         return None
     return Experiment(found.text(structure), (name, *found.rivals), found)
 

@@ -35,9 +35,10 @@ class Flag:
     Attributes
     ----------
     kind : str
-        ``at_bound``, ``no_influence``, ``not_passive``, ``own_offset`` or ``own_delay``.
+        ``at_bound``, ``no_influence``, ``not_passive``, ``one_direction``, ``clipped``, ``own_offset`` or
+        ``own_delay``.
     parameter : str
-        ``effect.parameter``; of ``not_passive`` the one that does most of it.
+        ``effect.parameter``; of ``not_passive`` the one that does most of it, of ``clipped`` empty.
     text : str
     """
 
@@ -60,7 +61,31 @@ def flags_of(fitted: Fit) -> tuple[Flag, ...]:
     silent = tuple(_without_influence(fitted))
     mute = {f.parameter.partition(".")[0] for f in silent if "contributes" in f.text}
     bounds = (f for f in _at_bounds(fitted) if f.parameter.partition(".")[0] not in mute)
-    return (*bounds, *silent, *_not_passive(fitted), *_own_sensors(fitted))
+    one_way = tuple(_one_way(fitted))
+    if one_way:
+        # The level and the offset are any two numbers with the right sum: what they are says nothing further.
+        bounds = (f for f in bounds if f.parameter != one_way[0].parameter)
+    return (*one_way, *bounds, *silent, *(() if one_way else _not_passive(fitted)), *_of_runs(fitted))
+
+
+def _one_way(fitted: Fit) -> Iterator[Flag]:
+    ways = {s.direction for r in fitted.runs for s in r.strokes}
+    if len(ways) == 1 and {"offset", "coulomb"} <= set(fitted.model.effects):
+        structure = fitted.model.structure
+        word = "increasing" if ways == {1} else "decreasing"
+        level = next(k for k in fitted.parameters if k.startswith("coulomb.level"))
+        text = (
+            f"every stroke goes with {word} {structure.motion}: friction cannot be told from an offset. Only their sum "
+            "is known; record strokes in both directions, or take the offset out of the model."
+        )
+        yield Flag("one_direction", level, text)
+
+
+def _of_runs(fitted: Fit) -> Iterator[Flag]:
+    for r in fitted.runs:
+        if r.doubt:
+            yield Flag("clipped", "", f"{r.name}: {r.doubt}. The values rest on that.")
+    yield from _own_sensors(fitted)
 
 
 def _own_sensors(fitted: Fit) -> Iterator[Flag]:

@@ -23,6 +23,10 @@ from .terms import start_terms
 CLEAR = 4.0
 # Of what the saturated model leaves: a smaller offset changes the error by less than 1 %.
 LEAST_OFFSET = 0.15
+# The clustered error of a coefficient that rests on one stroke or two is next to nothing: such a run is not judged.
+LEAST_STROKES = 4
+# The longest delay that is searched for anywhere; what looks like more is something else.
+LONGEST_DELAY_S = 0.1
 # Passes of the linear estimate of a delay; the second one corrects what the first one's straight line missed.
 PASSES = 3
 
@@ -36,10 +40,15 @@ def levelled(runs: tuple[Prepared, ...], model: Model) -> tuple[Prepared, ...]:
     model : Model
         Delays of the effort are looked for where it has Coulomb friction: nothing else shows the instant.
     """
-    if len(runs) < 2 or any(not r.strokes for r in runs):
+    if int(_judged(runs).sum()) < 2 or any(not r.strokes for r in runs):
         return runs
     runs = _without_own_offsets(runs)
     return _without_own_delays(runs, model) if "coulomb" in model.effects else runs
+
+
+def _judged(runs: Sequence[Prepared]) -> np.ndarray:
+    """Return which runs have strokes enough, in both directions: one way an offset is friction."""
+    return np.array([len(r.strokes) >= LEAST_STROKES and len({s.direction for s in r.strokes}) > 1 for r in runs])
 
 
 def _without_own_offsets(runs: tuple[Prepared, ...]) -> tuple[Prepared, ...]:
@@ -48,14 +57,12 @@ def _without_own_offsets(runs: tuple[Prepared, ...]) -> tuple[Prepared, ...]:
     made = [m[k] for m, k in zip(saturated(runs), keep, strict=True)]
     effort = [r.effort[k] for r, k in zip(runs, keep, strict=True)]
     own, error, rest = _own(made, [np.ones((len(m), 1)) for m in made], effort, _owners(runs, keep))
-    apart = own - np.median(own)
-    if not np.any((np.abs(apart) > CLEAR * error) & (np.abs(apart) > LEAST_OFFSET * rest)):
-        return runs
+    judged = _judged(runs)
+    apart = own - np.median(own[judged])
+    clear = judged & (np.abs(apart) > CLEAR * error) & (np.abs(apart) > LEAST_OFFSET * rest)
     return tuple(
-        replace(r, effort=r.effort - d, own_offset=float(d))
-        if abs(d) > CLEAR * e and abs(d) > LEAST_OFFSET * rest
-        else r
-        for r, d, e in zip(runs, apart, error, strict=True)
+        replace(r, effort=r.effort - d, own_offset=float(d)) if c else r
+        for r, d, c in zip(runs, apart, clear, strict=True)
     )
 
 
@@ -66,7 +73,7 @@ def _without_own_delays(runs: tuple[Prepared, ...], model: Model) -> tuple[Prepa
     least = float(np.mean([s.onset_uncertainty_s for r in runs for s in r.strokes]))
     if level <= 0.0:
         return runs
-    shifted = np.zeros(len(runs))
+    shifted, judged = np.zeros(len(runs)), _judged(runs)
     at = runs
     for turn in range(PASSES):
         matrix = columns(at, terms).matrix
@@ -76,8 +83,8 @@ def _without_own_delays(runs: tuple[Prepared, ...], model: Model) -> tuple[Prepa
         own, error, _ = _own(made, early, [m[k, -1] for m, k in zip(matrix, keep, strict=True)], _owners(at, keep))
         # The column is what an earlier start adds, per second and unit of friction.
         late, error = -own / level, error / level
-        apart = late - np.median(late)
-        clear = (np.abs(apart) > CLEAR * error) & (np.abs(apart) > least)
+        apart = late - np.median(late[judged])
+        clear = judged & (np.abs(apart) > CLEAR * error) & (np.abs(apart) > least) & (np.abs(apart) <= LONGEST_DELAY_S)
         if turn == 0:
             moved = clear
         if not np.any(moved):

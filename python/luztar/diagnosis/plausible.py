@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import MeasurementError
 from ..model import Model, card
 from ..model.structure import Structure
+from .clipped import with_doubt
 from .prepare import Prepared, prepare_run
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def prepare_measured(runs: Sequence[Run], model: Model) -> tuple[Prepared, ...]:
     made = []
     for number, run in enumerate(runs):
         require_channels(run, model)
-        made.append(prepare_run(number, run, model))
+        made.append(with_doubt(prepare_run(number, run, model), run, model))
         require_friction_sign(made[-1], model)
     return tuple(made)
 
@@ -83,10 +84,11 @@ def _require_change(run: Run, channel: str) -> None:
             f'Check the channel and its cable, or name another column: --map {channel}="COLUMN".',
         )
     stuck = [f for f in run.integrity.findings if f.kind == "stuck" and f.channel == channel]
-    still_s = sum((f.to_s or 0.0) - (f.from_s or 0.0) for f in stuck)
+    # A finding without a stretch speaks of a channel that never changes, which was refused above.
+    still_s = sum(b - a for f in stuck if f.from_s is not None for a, b in f.stretches_s())
     if still_s > STUCK_SHARE * run.duration_s:
         raise MeasurementError(
-            f"{stuck[0].text} In all it stands still for {still_s:.3g} s of {run.duration_s:.3g} s",
+            f"{stuck[0].text} In all, it stands still for {still_s:.3g} s of {run.duration_s:.3g} s",
             run.name,
             "Check the channel and its cable, and record the run again.",
         )

@@ -77,6 +77,8 @@ class Prepared:
     duration_s : float
     has_load : bool
         Whether the load was recorded.
+    doubt : str
+        What stands against naming an effect from this run; empty where nothing does.
     own_offset, own_delay_s : float
         What the sensor of this run alone had, taken off the effort already.
     """
@@ -95,6 +97,7 @@ class Prepared:
     step_s: float
     duration_s: float
     has_load: bool
+    doubt: str = ""
     own_offset: float = 0.0
     own_delay_s: float = 0.0
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ParameterError
 from ..model import Model
 from .climb import MAX_EFFECTS, Loop, climb
+from .clipped import require_trustworthy
 from .diagnose import Diagnosis
 from .fit import not_held_out
 from .floor import NoiseFloor, noise_floor
@@ -132,6 +133,8 @@ def study(
     ------
     MeasurementError, ModelError, ParameterError
         As :func:`luztar.fit`; or a negative number of effects.
+    DoubtfulError
+        As :func:`luztar.diagnose`.
     """
     if not isinstance(max_effects, int) or isinstance(max_effects, bool) or max_effects < 0:
         raise ParameterError(f"max_effects is {max_effects!r}", "max_effects", "Give a whole number from 0.")
@@ -143,6 +146,7 @@ def study(
         return study_free(model, left, held_out, max_effects=max_effects, progress=progress)
     prepared = levelled(prepare_measured(not_held_out(runs, held_out), model), model)
     unseen = prepare_measured(held_out, model) if len(held_out) else ()
+    require_trustworthy(prepared)
     floor = noise_floor(prepared, model.structure.effort_unit)
     steps, looks = climb(Loop(model, prepared, unseen, floor, progress), max_effects)
     return Study(tuple(steps), tuple(looks), floor, runs, held_out)

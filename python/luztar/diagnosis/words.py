@@ -125,6 +125,12 @@ def _turned(study: Study) -> list[str]:
     return lines
 
 
+def next_texts(study: Study) -> list[str]:
+    """Return the tests to do after a study, each once: those of its steps, then that of the last look."""
+    asked = [*(s.next_experiment for s in study.steps if not s.provisional), study.last.next_experiment]
+    return list(dict.fromkeys(e.text for e in asked if e is not None))
+
+
 def study_text(study: Study) -> str:
     """Return a study as text."""
     lines = ["unseen error, step by step:", *ladder_lines(study)]
@@ -136,9 +142,7 @@ def study_text(study: Study) -> str:
             f"Beside {beside} something may be left, but this test can neither name it nor show a gain worth having."
         )
     lines.append(sentence)
-    for s in study.steps:
-        if s.next_experiment and len(s.set) > 1:
-            lines.append(f"next: {s.next_experiment.text}")
+    lines += [f"next: {text}" for text in next_texts(study)]
     lines += _turned(study)
     lines += [
         "parameters of the last model (95 % intervals by stroke):",

@@ -43,11 +43,17 @@ PLATEAU_RATIO = 10.0
 CLIPPED_SAMPLES = 10
 CLIPPED_RATIO = 5.0
 
+# Where noise steps over two of a converter's levels and more from sample to sample, at most one sample in five repeats
+# its neighbour: ten in a row at an extreme are a limit, however often they come.
+LEVELS_IN_A_STEP = 2.0
+
 # White noise turns at two thirds of its samples, a smooth signal hardly ever.
 NOISY_TURNS = 0.2
 
 # Findings of one kind and channel beyond this many are counted in one closing finding over the rest of the record.
 MOST_FINDINGS = 20
+# Of a channel that clips again and again one finding is enough, and so many of its places.
+SHOWN_PLACES = 3
 
 _LOADED = ("torque", "force", "load")
 _MOVING = ("angle", "position", "handwheel", "roadwheel")
@@ -119,6 +125,18 @@ def _capped(found: list[tuple[int, int, Finding]], kind: str, time_s: np.ndarray
         doubtful = any(f.doubtful for _, _, f in rest)
         kept.append(Finding(kind, text, doubtful, first.channel, first.from_s, last.to_s))
     return kept
+
+
+def _in_one(found: list[Finding], text: str) -> list[Finding]:
+    """Return one finding for all stretches of a kind and channel, with the first places; one alone stays as it is."""
+    if len(found) < 2:
+        return found
+    first = found[0]
+    places = tuple(place for f in found for place in f.stretches_s())
+    others = ", ".join(f"{a:.4f} s" for a, _ in places[1 : 1 + SHOWN_PLACES])
+    more = " and so on" if len(places) > 1 + SHOWN_PLACES else ""
+    text = f"{text}, first from {places[0][0]:.4f} s to {places[0][1]:.4f} s, then from {others}{more}: {first.kind}?"
+    return [Finding(first.kind, text, first.doubtful, first.channel, places[0][0], places[-1][1], places)]
 
 
 def _fill_time(time_s: np.ndarray, where: Place) -> tuple[np.ndarray, list[Finding]]:
@@ -250,22 +268,39 @@ def _still(key: str, channels: Mapping[str, np.ndarray], time_s: np.ndarray, whe
     lengths = np.array([b - a + 2 for a, b in plateaus])
     n_single = max(values.size - int(lengths.sum()), 0)
     ordinary = _quantile_of_plateaus(lengths, n_single)
+    least = CLIPPED_SAMPLES if _is_fine(values, low, high) else max(CLIPPED_SAMPLES, CLIPPED_RATIO * ordinary)
     moving = next((channels[k] for k in _MOVING if k in channels), None)
-    clipped, stuck = [], []
+    clipped: list[Finding] = []
+    stuck: list[Finding] = []
+    levels: set[float] = set()
+    clipped_samples = stuck_samples = 0
     for (a, b), length in zip(plateaus, lengths, strict=True):
         first, last = a, b + 1
         at = (float(time_s[first]), float(time_s[last]))
         value = float(values[first])
         span = f"from {at[0]:.4f} s to {at[1]:.4f} s ({length} samples)"
-        if value in (low, high) and length >= max(CLIPPED_SAMPLES, CLIPPED_RATIO * ordinary):
+        if value in (low, high) and length >= least:
             text = f"{key} stays at its extreme {value:.6g} {span}: clipped?"
-            clipped.append((first, last, Finding("clipped", text, True, key, *at)))
+            clipped.append(Finding("clipped", text, True, key, *at))
+            levels.add(value)
+            clipped_samples += int(length)
         elif length >= max(STUCK_SAMPLES, PLATEAU_RATIO * ordinary) and at[1] - at[0] >= STUCK_S:
             if moving is not None and not _moves(moving, first, last):
                 continue
             text = f"{key} stays at exactly {value:.6g} {span}: stuck?"
-            stuck.append((first, last, Finding("stuck", text, True, key, *at)))
-    return _capped(clipped, "clipped", time_s) + _capped(stuck, "stuck", time_s)
+            stuck.append(Finding("stuck", text, True, key, *at))
+            stuck_samples += int(length)
+    extremes = f"its extreme{'s' if len(levels) > 1 else ''} {' and '.join(f'{v:.6g}' for v in sorted(levels))}"
+    often = f"in {len(clipped)} stretches, {_share(clipped_samples, values.size)} of the record"
+    still = f"{key} stays at one value in {len(stuck)} stretches, {_share(stuck_samples, values.size)} of the record"
+    return [
+        *_in_one(clipped, f"{key} stays at {extremes} {often}"),
+        *_in_one(stuck, still),
+    ]
+
+
+def _share(samples: int, of: int) -> str:
+    return f"{100.0 * samples / of:.2g} %"
 
 
 def _is_noisy(values: np.ndarray) -> bool:
@@ -274,6 +309,16 @@ def _is_noisy(values: np.ndarray) -> bool:
     if steps.size < STUCK_SAMPLES:
         return False
     return bool((np.sign(steps[1:]) != np.sign(steps[:-1])).mean() > NOISY_TURNS)
+
+
+def _is_fine(values: np.ndarray, low: float, high: float) -> bool:
+    """Whether noise steps over several levels of the converter away from the channel's extremes."""
+    inside = (values > low) & (values < high)
+    steps = np.abs(np.diff(values))[inside[1:] & inside[:-1]]
+    levels = np.unique(values[inside])
+    if steps.size < STUCK_SAMPLES or levels.size < STUCK_SAMPLES:
+        return False
+    return bool(np.median(steps) >= LEVELS_IN_A_STEP * float(np.diff(levels).min()))
 
 
 def _quantile_of_plateaus(lengths: np.ndarray, n_single: int) -> float:

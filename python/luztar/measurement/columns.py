@@ -176,8 +176,12 @@ def _settle(key: str, column: Column, factor: float | None, given: str | None, w
             used,
             f"{key}: {column.header!r} gives no known unit; the factor {factor:g} is taken to make it {used}",
         )
+    if column.unit is not None and own is None and asked is not None:
+        said = f"{key} is taken as {asked.symbol}; the unit in the file, {column.unit!r}, is not known"
+        return Source(column, asked.si, text, column.unit, used, said)
     if column.unit is not None:
-        own = _units.parse(column.unit, place)
+        if own is None:
+            raise _unknown_unit(key, column, place)
         if own.quantity != QUANTITY[key]:
             remedy = f'Give the factor: --map {key}="{column.header}*FACTOR"'
             if key == "torque" and own.quantity == "force":
@@ -197,7 +201,28 @@ def _settle(key: str, column: Column, factor: float | None, given: str | None, w
     if si_if_none:
         return Source(column, 1.0, text, "", used, f"{key} is taken as {used}; the file gives no unit")
     raise MeasurementError(
-        f"{key} has no unit", place, f"Write it in the header, as {key}_{used}, or say --unit {key}={used}."
+        f"{key} has no unit",
+        place,
+        f"Write it in the header, as {key}_{used}, or say which it is, as --unit {key}={used} (known: {_known(key)}).",
+    )
+
+
+def _known(key: str) -> str:
+    """Return the units a channel may be in."""
+    return ", ".join(dict.fromkeys(u.symbol for u in _units.UNITS.values() if u.quantity == QUANTITY[key]))
+
+
+def _unknown_unit(key: str, column: Column, place: str) -> MeasurementError:
+    """Return the error that says which unit is not known, which are, and how to say what it is."""
+    quantity, unit = QUANTITY[key], column.unit or ""
+    close = [g for g in _units.nearest(unit) if _units.UNITS[g].quantity == quantity]
+    hint = f"Did you mean {' or '.join(close)}? " if close else ""
+    example = close[0] if close else _units.SI_SYMBOL[quantity]
+    return MeasurementError(
+        f"unknown unit {unit!r} for {key}",
+        place,
+        f"{hint}Known for {key}: {_known(key)}. Write one in the header, or say --unit {key}={example} "
+        f'(in Python units={{"{key}": "{example}"}}).',
     )
 
 

@@ -25,6 +25,8 @@ class Finding:
         The channel concerned; None for the time axis or the whole file.
     from_s, to_s : float or None
         The stretch concerned, seconds from the file's own time; None for the whole record.
+    places : tuple of (float, float) [s]
+        Where one finding speaks of several stretches: the first and last time of each.
     """
 
     kind: str
@@ -33,6 +35,17 @@ class Finding:
     channel: str | None = None
     from_s: float | None = None
     to_s: float | None = None
+    places: tuple[tuple[float, float], ...] = ()
+
+    def stretches_s(self) -> tuple[tuple[float, float], ...]:
+        """Return the first and last time of every stretch concerned; minus to plus infinity for the whole record."""
+        low = -math.inf if self.from_s is None else self.from_s
+        high = math.inf if self.to_s is None else self.to_s
+        return self.places or ((low, high),)
+
+    def concerns(self, first_s: float, last_s: float) -> bool:
+        """Whether the finding speaks of a part of ``first_s`` to ``last_s``."""
+        return any(a <= last_s and b >= first_s for a, b in self.stretches_s())
 
     def to_dict(self) -> dict[str, Any]:
         """Return the finding as plain JSON values."""
@@ -43,6 +56,7 @@ class Finding:
             "channel": self.channel,
             "from_s": self.from_s,
             "to_s": self.to_s,
+            "count": max(1, len(self.places)),
         }
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .._arrays import number
 from ..errors import MeasurementError, ParameterError
 from .arrays import check_rate
 from .check import inspect
@@ -107,8 +108,8 @@ def cut_out(run: Run, from_s: float | None = None, to_s: float | None = None, *,
     MeasurementError
         Where fewer than two samples lie between.
     """
-    low = -math.inf if from_s is None else float(from_s)
-    high = math.inf if to_s is None else float(to_s)
+    low = -math.inf if from_s is None else number("from_s", from_s)
+    high = math.inf if to_s is None else number("to_s", to_s)
     rows = np.flatnonzero((run.time_s >= low) & (run.time_s <= high))
     return _taken(run, rows, name or run.name)
 
@@ -171,6 +172,4 @@ def _rebuilt(
 
 
 def _touches(finding: Finding, first: float, last: float) -> bool:
-    if finding.from_s is None or finding.to_s is None:
-        return True
-    return finding.from_s <= last and finding.to_s >= first
+    return finding.concerns(first, last)

@@ -159,7 +159,16 @@ class Run:
         text = f"there is no channel {channel!r}; found: {found}" + (
             f"; columns in the file: {columns}" if columns else ""
         )
-        raise MeasurementError(text, self.name, f'Name its column: --map {channel}="COLUMN" (map= in Python).')
+        remedy = f'Name its column: --map {channel}="COLUMN" (map= in Python).'
+        # "torque_Xy": the name of the channel with something behind it that is no unit.
+        meant = [c for c in self.integrity.columns_found if c.lower().replace(" ", "_").startswith(f"{channel}_")]
+        if meant:
+            unit = CHANNEL_UNITS[channel]
+            remedy = (
+                f'If {meant[0]!r} is it, its unit is not known: say --map {channel}="{meant[0]}" --unit '
+                f"{channel}={unit} (map= and units= in Python), with the unit it is in."
+            )
+        raise MeasurementError(text, self.name, remedy)
 
     @property
     def duration_s(self) -> float:

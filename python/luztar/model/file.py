@@ -72,6 +72,9 @@ def load(path: str | os.PathLike[str]) -> Model:
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ModelError(f"is not TOML: {error}", shown, "See docs/model-files.md for an example.") from None
+    if raw.get("structure") == "mechanism":
+        remedy = "Load it with luztar.mechanism.Mechanism.load, or run it with luztar simulate."
+        raise ModelError("a mechanism of several bodies is no model to fit", f"{shown}, structure", remedy)
     try:
         parts = _schema().model_validate(raw)
     except ValidationError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from ..diagnosis.fit import Fit
 from ..diagnosis.profile import State
 from ..model import card
 from .rehearse import Sensor, planning_rate_hz
-from .separate import Ranked, Rehearsal, Truth, rank
+from .separate import Ranked, Rehearsal, Truth, rank, separation
 from .trials import Trial, axis_trials, rig_trials
 
 # A rival that imitates this much of an effect on the strokes recorded (cosine) is worth a test of its own.
@@ -21,6 +20,10 @@ ALIKE = 0.9
 # Fewer standard errors than this in three runs is no separation.
 TOLD_APART = 3.3
 RUNS = 3
+# More repeats than this are no advice.
+MOST_REPEATS = 12
+# The strokes recorded so far are simulated for so many of the runs at most; the others count by their time.
+MOST_REHEARSED = 3
 # An effect that was named alone, and that the strokes recorded set this far apart from its rivals, needs no other test.
 SETTLED = 50.0
 # The rivals looked at beside the named effect; more are an unclear set, not a question of one test.
@@ -57,35 +60,71 @@ class Advice:
     ranking : tuple of Ranked
         Tests, the best first.
     now : float
-        Standard errors between them on the strokes recorded so far.
+        Standard errors between them on all strokes recorded so far.
+    runs : int
+        Runs recorded so far.
     """
 
     effect: str
     rivals: tuple[str, ...]
     ranking: tuple[Ranked, ...]
     now: float
+    runs: int
 
     @property
     def best(self) -> Ranked:
-        """The test to do."""
+        """The test to do, where it is better than what was recorded."""
         return self.ranking[0]
 
     @property
+    def apart(self) -> float:
+        """Standard errors between them in three runs of the best test."""
+        return self.best.apart * math.sqrt(RUNS)
+
+    @property
+    def better(self) -> bool:
+        """Whether three runs of the best test would tell more than what was recorded."""
+        return self.apart > self.now
+
+    @property
     def decides(self) -> bool:
-        """Whether three runs of the best test would tell them apart."""
-        return self.best.apart * math.sqrt(RUNS) >= TOLD_APART
+        """Whether three runs of the best test would tell them apart, and better than what was recorded."""
+        return self.better and self.apart >= TOLD_APART
+
+    @property
+    def repeats(self) -> int | None:
+        """How many more runs like those recorded would tell them apart, or twice as well; None where too many.
+
+        Standard errors grow with the root of the number of runs.
+        """
+        if self.now <= 0.0:
+            return None
+        wanted = TOLD_APART if self.now < TOLD_APART else 2.0 * self.now
+        more = math.ceil(self.runs * ((wanted / self.now) ** 2 - 1.0))
+        return more if more <= MOST_REPEATS else None
 
     def text(self, structure: str) -> str:
         """Return the advice in the words of the workshop."""
         names = " and ".join(card(n, structure).title for n in self.rivals)
         mine = card(self.effect, structure).title
-        if not self.decides:
-            return f"No test of the list tells {mine} from {names} at this size: {card(self.effect, structure).check}"
-        unit = "minute" if self.best.minutes < 1.25 else "minutes"
-        return (
-            f"{self.best.trial.text}. That tells {mine} from {names}: one run of {_short(self.best.minutes)} {unit} "
-            f"sets them {_standard_errors(self.best.apart)} apart, the strokes recorded so far {_short(self.now)}."
+        if self.decides:
+            unit = "minute" if _short(self.best.minutes) == "1.0" else "minutes"
+            return (
+                f"{self.best.trial.text}. That tells {mine} from {names}: three runs of {_short(self.best.minutes)} "
+                f"{unit} set them {_standard_errors(self.apart)} apart, the strokes recorded so far {_short(self.now)}."
+            )
+        check = card(self.effect, structure).check
+        if self.better:
+            return f"No test of the list tells {mine} from {names} at this size: {check}"
+        none = (
+            f"No test of the list would tell {mine} from {names} better than the strokes recorded so far, which set "
+            f"them {_standard_errors(self.now)} apart"
         )
+        if self.repeats is None:
+            return f"{none}: {check}"
+        reached = self.now * math.sqrt(1.0 + self.repeats / self.runs)
+        runs = "one more run" if self.repeats == 1 else f"{self.repeats} more runs"
+        return f"{none}. Repeat those: {runs} like them make it {_short(reached)}."
 
 
 def _short(value: float) -> str:
@@ -114,9 +153,11 @@ def advice(fitted: Fit, state: State, effect: str, rivals: Sequence[str]) -> Adv
     if any(card(n, fitted.model.structure_name).channel for n in (*truth.terms.effects, *chosen)):
         # Nobody knows beforehand what the load channel would do.
         return None
-    ranking = rank(truth, chosen, _trials(fitted), sensor)
-    so_far = rank(truth, chosen, [_as_recorded(fitted, sensor.rate_hz)], sensor)[0]
-    return Advice(effect, chosen, ranking, so_far.apart * math.sqrt(len(fitted.runs)))
+    recorded, share = _as_recorded(fitted, sensor.rate_hz)
+    now = separation(truth, chosen, recorded, sensor) / math.sqrt(share)
+    # Three runs of a test must tell more than what is there.
+    ranking = rank(truth, chosen, _trials(fitted), sensor, above=now / math.sqrt(RUNS))
+    return Advice(effect, chosen, ranking, now, len(fitted.runs))
 
 
 def lookalikes(fitted: Fit, state: State, effect: str) -> tuple[str, ...]:
@@ -128,7 +169,7 @@ def lookalikes(fitted: Fit, state: State, effect: str) -> tuple[str, ...]:
     if not possible:
         return ()
     truth, sensor = _taken(fitted, state, effect)
-    rehearsal = Rehearsal.of([_as_recorded(fitted, sensor.rate_hz).make(1.0 / sensor.rate_hz, 1)], sensor, truth)
+    rehearsal = Rehearsal.of(_as_recorded(fitted, sensor.rate_hz)[0], sensor, truth)
     found = {n: rehearsal.cosine(n) for n in possible}
     return tuple(sorted((n for n in found if found[n] > ALIKE), key=lambda n: -found[n]))
 
@@ -158,13 +199,8 @@ def _trials(fitted: Fit) -> tuple[Trial, ...]:
     return axis_trials(low, high, max(float(np.abs(r.speed).max()) for r in fitted.runs))
 
 
-def _as_recorded(fitted: Fit, rate_hz: float) -> Trial:
-    """Return the first run's own motion as a trial."""
-    run = fitted.runs[0]
-
-    @functools.cache
-    def make(step_s: float, seed: int) -> np.ndarray:
-        time = np.arange(0.0, run.time_s[-1], step_s)
-        return np.interp(time, run.time_s, run.motion)
-
-    return Trial("as_recorded", "the strokes recorded so far", make)
+def _as_recorded(fitted: Fit, rate_hz: float) -> tuple[list[np.ndarray], float]:
+    """Return the motion of the longest runs as the test would sample it, and their share of the time of all runs."""
+    longest = sorted(fitted.runs, key=lambda r: -r.duration_s)[:MOST_REHEARSED]
+    share = sum(r.duration_s for r in longest) / sum(r.duration_s for r in fitted.runs)
+    return [np.interp(np.arange(0.0, r.time_s[-1], 1.0 / rate_hz), r.time_s, r.motion) for r in longest], share

@@ -55,5 +55,4 @@ def write(path: str | os.PathLike[str], plan: Plan) -> None:
     """
     from ..report.leaf import write_leaf
 
-    picture = plan.figure().to_html(full_html=False, include_plotlyjs=True)
-    write_leaf(path, "Plan of a test", str(plan), picture)
+    write_leaf(path, "Plan of a test", str(plan), plan.figure(), "This figure is drawn by the browser.")

@@ -10,23 +10,19 @@ from typing import Any
 
 import numpy as np
 
+from .._arrays import whole_number
 from ..errors import ParameterError
 from ..model import Model, card
-from .rehearse import Sensor, planning_rate_hz, rehearse
+from .asked import LEAST_STROKES, MOST_STROKES, asked
+from .rehearse import Sensor, rehearse
 from .separate import Ranked
 from .signatures import Signatures, signatures
 from .sizes import CONFUSABLE, Pair, Smallest, chance_errors, confusable, gain_errors, smallest
 from .trials import Trial, as_planned, axis_trials, rig_trials
 from .typical import SOUND
 
-# What is planned where nothing is said: a TB 038 test with an encoder of 0.02 degrees, or strokes of a ball screw.
-USUAL: dict[str, dict[str, Any]] = {
-    "rig": {"step": math.radians(0.02), "rate": 500.0, "speed": (5.0, 38.0), "reach": 50.0, "noise": 0.02},
-    "axis": {"step": 1e-6, "rate": 1000.0, "speed": (0.04, 0.13), "reach": 0.12, "noise": 1.0},
-}
 # Noise of a torque sensor with its amplifier keeps its sign for about this long.
 NOISE_TIME_S = 0.05
-MOST_RUNS, MOST_STROKES = 50, 400
 
 
 @dataclass(frozen=True)
@@ -196,49 +192,50 @@ def plan(
     if model.structure.is_free:
         raise ParameterError(f"there is no plan for '{model.structure_name}'", "structure", "Plan a rig or an axis.")
     rig = model.structure_name == "rig"
-    assert model.band_hz is not None
-    usual = USUAL[model.structure_name]
-    unit = math.pi / 180.0 if rig else 1.0
-    step = (encoder_deg * unit if encoder_deg is not None else usual["step"]) if rig else (step_m or usual["step"])
-    rate = _positive("rate_hz", rate_hz or usual["rate"])
-    if not model.band_hz < 0.45 * rate:
-        raise ParameterError(f"{rate:g} Hz is too slow for a band of {model.band_hz:g} Hz", "rate_hz", "Sample faster.")
-    sensor = Sensor(
-        _positive("encoder_deg" if rig else "step_m", step),
-        planning_rate_hz(rate, model.band_hz),
-        _positive("noise", usual["noise"] if noise is None else noise),
-        max(0.0, noise_time_s),
+    test = asked(
+        model,
+        encoder_deg=encoder_deg,
+        step_m=step_m,
+        rate_hz=rate_hz,
+        speed=speed,
+        speeds=speeds,
+        angle_deg=angle_deg,
+        travel_m=travel_m,
+        runs=runs,
+        strokes=strokes,
+        minutes=minutes,
+        noise=noise,
+        noise_time_s=noise_time_s,
+        friction=friction,
     )
-    low, high = (_positive("speed", v) for v in (speed or usual["speed"]))
-    if low > high:
-        raise ParameterError(f"the slowest speed, {low:g}, is above the fastest, {high:g}", "speed", "Swap them.")
-    half = angle_deg if rig else (None if travel_m is None else travel_m / 2.0)
-    reach = _positive("angle_deg" if rig else "travel_m", usual["reach"] if half is None else half)
-    _counted("runs", runs, MOST_RUNS)
-    _counted("strokes", strokes, MOST_STROKES)
-    ladder = tuple(_positive("speeds", v) * unit for v in speeds)
-    over = 8.0 * unit if rig else 0.0
+    seed = whole_number("seed", seed, 0, 2**32 - 1)
+    sensor, low, high, reach = test.sensor, test.low, test.high, test.reach
+    unit = math.pi / 180.0 if rig else 1.0
+    half = reach * unit if rig else 0.5 * reach
+    ladder = tuple(v * unit for v in test.speeds)
 
     def positions(count: int) -> list[np.ndarray]:
-        make = as_planned(reach * unit, (low * unit, high * unit), count, over, ladder)
-        return [make(1.0 / sensor.rate_hz, seed + k) for k in range(runs)]
+        make = as_planned(half, (low * unit, high * unit), count, 8.0 * unit if rig else 0.0, ladder)
+        return [make(1.0 / sensor.rate_hz, seed + k) for k in range(test.runs)]
 
+    strokes = test.strokes
     if minutes is not None:
+        # A hand that tries to turn evenly does not: how long it really takes is counted.
         once = sum(p.size for p in positions(strokes)) / sensor.rate_hz / 60.0
-        strokes = min(MOST_STROKES, max(2, round(strokes * _positive("minutes", minutes) / once)))
-    sound = {**SOUND[model.structure_name], **({} if friction is None else {"coulomb": friction})}
+        strokes = min(MOST_STROKES, max(-(-LEAST_STROKES // test.runs), round(strokes * minutes / once)))
+    sound = {**SOUND[model.structure_name], **({} if test.friction is None else {"coulomb": test.friction})}
     table = signatures(rehearse(positions(strokes), sensor, model), model, sensor, sound)
-    shown = "/".join(f"{v:g}" for v in speeds) if speeds else f"{low:g} to {high:g}"
-    place = f"beyond ±{reach:g} deg, {shown} deg/s" if rig else f"over {2.0 * reach:g} m, {shown} m/s"
-    test = f"{runs} {'run' if runs == 1 else 'runs'} of {strokes} strokes {place}, {table.minutes:.1f} minutes"
-    others = rig_trials() if rig else axis_trials(-reach, reach, max([high, *speeds]))
+    shown = "/".join(f"{v:g}" for v in test.speeds) if test.speeds else f"{low:g} to {high:g}"
+    place = f"beyond ±{reach:g} deg, {shown} deg/s" if rig else f"over {reach:g} m, {shown} m/s"
+    each = f"{test.runs} {'run' if test.runs == 1 else 'runs'} of {strokes} strokes"
+    others = rig_trials() if rig else axis_trials(-half, half, max([high, *test.speeds]))
     names = table.effects
     cosines = np.array([[1.0 if a == b else table.cosine(a, b) for b in names] for a in names])
     sizes = smallest(table, sensor)
     return Plan(
         model=model,
-        test=test,
-        runs=runs,
+        test=f"{each} {place}, {table.minutes:.1f} minutes",
+        runs=test.runs,
         strokes=table.strokes,
         minutes=table.minutes,
         sensor=sensor,
@@ -284,14 +281,3 @@ def _pairs(
         best, alike = max(ranked, key=lambda r: r[0].per_minute)
         out.append(Pair((a, b), cosine, best.trial.name, f"{best.trial.text}.", alike))
     return tuple(out)
-
-
-def _positive(name: str, value: float) -> float:
-    if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
-        raise ParameterError(f"{value} makes no test", name, "Give a number above 0.")
-    return float(value)
-
-
-def _counted(name: str, value: int, most: int) -> None:
-    if not 1 <= value <= most:
-        raise ParameterError(f"{value} makes no test", name, f"Give a whole number from 1 to {most}.")

@@ -161,8 +161,29 @@ class Ranked:
         return min(self.apart, ENOUGH) ** 2 / self.minutes
 
 
+def separation(truth: Truth, rivals: Sequence[str], positions: Sequence[np.ndarray], sensor: Sensor) -> float:
+    """Return the standard errors between a truth and the rival that comes nearest, on motions as they are.
+
+    Parameters
+    ----------
+    truth : Truth
+    rivals : sequence of str
+    positions : sequence of ndarray
+        One per run, sampled at ``sensor.rate_hz``.
+    sensor : Sensor
+    """
+    rehearsal = Rehearsal.of(positions, sensor, truth)
+    return min(rehearsal.apart(rehearsal.refined(n, rehearsal.coarse(n))) for n in rivals)
+
+
 def rank(
-    truth: Truth, rivals: Sequence[str], trials: Sequence[Trial], sensor: Sensor, seed: int = 1
+    truth: Truth,
+    rivals: Sequence[str],
+    trials: Sequence[Trial],
+    sensor: Sensor,
+    seed: int = 1,
+    *,
+    above: float = 0.0,
 ) -> tuple[Ranked, ...]:
     """Rank tests by how well they tell a truth from its rivals, per minute; the best first.
 
@@ -176,11 +197,16 @@ def rank(
         What would record the test.
     seed : int
         Of the hand that turns.
+    above : float
+        Tests whose one run sets them no more than this many standard errors apart come last, however short they are.
 
     Notes
     -----
     A grid can only overrate a test, so the tests are refined from the top until none below can overtake.
     """
+
+    def worth(found: Ranked) -> float:
+        return found.per_minute if found.apart > above else 0.0
 
     def judged(trial: Trial) -> tuple[Callable[[bool], Ranked], Ranked]:
         rehearsal = Rehearsal.of([trial.make(1.0 / sensor.rate_hz, seed)], sensor, truth)
@@ -196,8 +222,8 @@ def rank(
     made = [judged(trial) for trial in trials]
     best = 0.0
     out = []
-    for result, rough in sorted(made, key=lambda m: -m[1].per_minute):
-        found = result(True) if rough.per_minute > best else rough
-        best = max(best, found.per_minute)
+    for result, rough in sorted(made, key=lambda m: -worth(m[1])):
+        found = result(True) if worth(rough) > best else rough
+        best = max(best, worth(found))
         out.append(found)
-    return tuple(sorted(out, key=lambda r: -r.per_minute))
+    return tuple(sorted(out, key=lambda r: (-worth(r), -r.per_minute)))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
+from .. import _arrays, _core
 from .._arrays import number, vector, whole_number
 from .._printed import Printed, known, with_error
 from .._stream import Stream
@@ -147,8 +147,7 @@ def line(x: Any, y: Any, weights: Any = None) -> Line:
     >>> line([0.0, 1.0, 2.0], [1.0, 3.0, 5.0]).slope
     2.0
     """
-    weights = None if weights is None else vector("weights", weights, minimum=0)
-    return _line(_core.fit_line(x, y, weights))
+    return _line(_core.fit_line(x, y, _arrays.weights(weights, y, 2)))
 
 
 class LineSums(Stream, _core.LineSums):

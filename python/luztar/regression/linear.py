@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
+from .. import _arrays, _core
 from .._arrays import number, rows, vector, whole_number
 from .._printed import Printed, known, with_error
 from .._stream import Stream
@@ -113,7 +113,9 @@ def linear(x: Any, y: Any, weights: Any = None, *, intercept: bool = True) -> Li
     >>> fit.coefficients.round(9).tolist()
     [1.0, 2.0, 3.0]
     """
-    fit = _core.fit_linear(x, y, _weights(weights), bool(intercept))
+    if weights is not None:
+        weights = _arrays.weights(weights, y, _arrays.rows("x", x).shape[1] + bool(intercept))
+    fit = _core.fit_linear(x, y, weights, bool(intercept))
     return LinearFit(*fit, bool(intercept))
 
 

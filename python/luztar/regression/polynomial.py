@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
+from .. import _arrays, _core
 from .._arrays import number, vector, whole_number
 from .._printed import Printed, known, with_error
 from .._stream import Stream
@@ -120,8 +120,7 @@ def polynomial(x: Any, y: Any, degree: int, weights: Any = None) -> PolynomialFi
     [1.0, 0.0, 1.0]
     """
     degree = whole_number("degree", degree, 0, _HIGHEST)
-    weights = None if weights is None else vector("weights", weights, minimum=0)
-    return _fit(_core.fit_polynomial(x, y, weights, degree))
+    return _fit(_core.fit_polynomial(x, y, _arrays.weights(weights, y, degree + 1), degree))
 
 
 class PolynomialSums(Stream, _core.PolynomialSums):

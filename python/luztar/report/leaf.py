@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 from html import escape
 from pathlib import Path
+from typing import Any
 
+from . import embed
+from .figures_of import values
 from .style import FONT
 
 
-def write_leaf(path: str | os.PathLike[str], title: str, text: str, picture: str) -> None:
+def write_leaf(path: str | os.PathLike[str], title: str, text: str, figure: Any = None, instead: str = "") -> None:
     """Write one HTML file that needs nothing but a browser.
 
     Parameters
@@ -18,12 +21,21 @@ def write_leaf(path: str | os.PathLike[str], title: str, text: str, picture: str
         An existing file is replaced.
     title, text : str
         Plain text; escaped here.
-    picture : str
-        HTML.
+    figure : plotly Figure, optional
+    instead : str
+        Plain text in the figure's place where there is none, or no script may run.
     """
+    picture = f'<div data-figure="picture" role="img">{escape(instead)}</div>\n'
+    if figure is not None:
+        data = embed.safe_json({"picture": values(figure)})
+        picture += (
+            f'<script type="application/json" id="luztar-figures">{data}</script>\n'
+            f'<script type="application/gzip" id="luztar-plotly">{embed.packed(embed.library())}</script>\n'
+            f"<script>{embed.drawing()}</script>\n"
+        )
     page = (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title></head>\n'
         f'<body style="font-family:{FONT};margin:2em">\n<h1>{escape(title)}</h1>\n'
-        f'<pre style="white-space:pre-wrap">{escape(text)}</pre>\n{picture}\n</body></html>\n'
+        f'<pre style="white-space:pre-wrap">{escape(text)}</pre>\n{picture}</body></html>\n'
     )
     Path(path).write_text(page, encoding="utf-8")

@@ -70,12 +70,10 @@ def page(study: Study | None, check: Check | None, not_checked: str | None = Non
     try:
         from jinja2 import Environment, FileSystemLoader, StrictUndefined
         from markupsafe import Markup
-        from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingError("a report needs jinja2 and plotly", "report", "pip install jinja2 plotly") from error
 
-    plotly_js = embed.safe_script(get_plotlyjs())
-    draw_js = embed.safe_script((HERE / "draw.js").read_text(encoding="utf-8"))
+    plotly_js, draw_js = embed.library(), embed.drawing()
     provenance = content.provenance(study, check, datetime.now().astimezone())
     figures = figures_of(study, check)
     data: dict[str, Any] = {
@@ -93,7 +91,7 @@ def page(study: Study | None, check: Check | None, not_checked: str | None = Non
         figures=figures,
         css=Markup((HERE / "report.css").read_text(encoding="utf-8")),
         data={key: Markup(embed.safe_json(value)) for key, value in data.items() if value is not None},
-        plotly_js=Markup(plotly_js),
+        plotly_packed=Markup(embed.packed(plotly_js)),
         draw_js=Markup(draw_js),
         script_hashes=Markup(f"{embed.script_hash(plotly_js)} {embed.script_hash(draw_js)}"),
     )

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from .. import _core
-from .._arrays import number, whole_number
+from .._arrays import number, real, whole_number
 from ..errors import ParameterError
 
 CutoffAt = Literal["per_pass", "overall"]
@@ -80,6 +80,11 @@ class Design:
 
     def magnitude(self, frequency_hz: float) -> float:
         """Return the magnitude after all passes at ``frequency_hz``, in [0, sample_rate_hz / 2]."""
+        if isinstance(frequency_hz, np.ndarray | list | tuple):
+            shape = real("frequency_hz", frequency_hz).shape
+            raise ParameterError(
+                f"frequency_hz has the shape {shape}", "frequency_hz", "Give one; response takes many."
+            )
         return self._design().magnitude(number("frequency_hz", frequency_hz))
 
     def response(self, frequency_hz: Any) -> np.ndarray:
@@ -91,8 +96,8 @@ class Design:
             A frequency outside [0, sample_rate_hz / 2].
         """
         design = self._design()
-        frequencies = np.asarray(frequency_hz, dtype=np.float64)
-        found = np.array([design.response(f) for f in frequencies.ravel()], dtype=np.float64)
+        frequencies = real("frequency_hz", frequency_hz)
+        found = np.array([design.response(float(f)) for f in frequencies.ravel()], dtype=np.float64)
         return found.reshape(-1, 2).view(np.complex128).reshape(frequencies.shape)
 
     def settle_samples(self, tolerance: float = 1e-6) -> int:

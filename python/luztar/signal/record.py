@@ -8,7 +8,7 @@ from typing import Any, Literal, overload
 import numpy as np
 
 from .. import _core
-from .._arrays import is_plain, number, refuse_not_finite, rows_along, vector, whole_number, writable
+from .._arrays import is_plain, pair, refuse_not_finite, rows_along, vector, whole_number, writable
 from ..errors import ParameterError
 from .design import CutoffAt, Design, Edges, LowPass, Missing
 from .missing import held, split
@@ -220,11 +220,12 @@ def _run(
     threads: int,
 ) -> np.ndarray:
     """Filter whatever shape, into whatever array."""
+    if threads != 1:
+        threads = whole_number("threads", threads, 1, 1024)
     if missing == "raise" and scale is None and is_plain(x) and (axis == -1 or axis == 0):
         return _vector(ready, x, out)
     if missing not in ("raise", "split", "hold"):
         raise ParameterError(f"missing is {missing!r}", "missing", "Give 'raise', 'split' or 'hold'.")
-    threads = whole_number("threads", threads, 1, 1024)
     if scale is not None:
         return _counts(ready, x, scale, out)
     if missing == "raise" and axis == 0 and isinstance(x, np.ndarray) and x.ndim == 2 and x.dtype.kind in "fiu":
@@ -303,7 +304,7 @@ def _counts(ready: _core.ZeroPhase, x: Any, scale: tuple[float, float], out: np.
         raise ParameterError(
             f"x is {counts.dtype} {counts.shape}", "x", "With a scale give a vector of int16, int32 or float32."
         )
-    factor, offset = number("scale", scale[0]), number("scale", scale[1])
+    factor, offset = pair("scale", scale)
     y = np.empty(counts.shape) if out is None else writable("out", out, counts.shape)
     ready.apply_samples(np.require(counts, requirements=["C", "A"]), (factor, offset), y)
     return y

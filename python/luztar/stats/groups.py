@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
+from operator import index
 from typing import Any, Literal
 
 import numpy as np
@@ -78,6 +80,11 @@ def by_direction(
     dict of int to Description
         Keys -1, 0 (at rest) and 1, those that occur.
 
+    Raises
+    ------
+    ParameterError
+        A motion of another length or not finite, a negative ``rest``; what :func:`describe` refuses.
+
     Examples
     --------
     >>> torque, speed = [1.0, 1.2, 0.1, -0.9], [2.0, 2.0, 0.0, -2.0]
@@ -88,6 +95,9 @@ def by_direction(
     rest = number("rest", rest)
     if not rest >= 0.0:
         raise ParameterError(f"rest is {rest}", "rest", "Give a value of 0 or above.")
+    x = vector("x", x, finite=nan != "skip")
+    if x.shape != motion.shape:
+        raise ParameterError(f"motion has {motion.size} values, x {x.size}", "motion", "Give one for every sample.")
     labels = (motion > rest).astype(np.int64) - (motion < -rest)
     return by_label(x, labels, nan=nan, clipped_at=clipped_at)
 
@@ -125,7 +135,7 @@ def by_window(
     [2.0, 6.0]
     """
     x = vector("x", x, finite=nan != "skip")
-    pairs = [(int(start), int(end)) for start, end in windows]
+    pairs = _pairs(windows)
     for start, end in pairs:
         if not 0 <= start < end <= x.size:
             raise ParameterError(
@@ -133,6 +143,17 @@ def by_window(
             )
     like = Moments(shape=True, nan=nan, clipped_at=clipped_at)
     return [_described(part) for part in _core.moments_by_window(x, pairs, like)]
+
+
+def _pairs(windows: Any) -> list[tuple[int, int]]:
+    try:
+        given = [(*window,) for window in windows]
+        made = [(index(start), index(end)) for start, end in given]
+    except (TypeError, ValueError):
+        raise ParameterError(
+            f"windows is {reprlib.repr(windows)}", "windows", "Give pairs of whole numbers: [(first, after the last)]."
+        ) from None
+    return made
 
 
 def _described(part: _core.Moments) -> Description:

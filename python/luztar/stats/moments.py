@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from .. import _core
-from .._arrays import number
+from .._arrays import pair
 from .._printed import Printed
-from .._stream import Stream
+from .._stream import Stream, same_kind
 from ..errors import ParameterError
 
 
@@ -129,13 +129,18 @@ class Moments(Stream, _core.Moments):
     ) -> Moments:
         if nan not in ("raise", "skip"):
             raise ParameterError(f"nan is {nan!r}", "nan", 'Give "raise" or "skip".')
-        low, high = (-math.inf, math.inf) if clipped_at is None else (number("clipped_at", v) for v in clipped_at)
+        low, high = (-math.inf, math.inf) if clipped_at is None else pair("clipped_at", clipped_at)
         if not low < high:
             raise ParameterError(f"clipped_at is {clipped_at}", "clipped_at", "Give the lower limit first.")
         made = super().__new__(cls, shape=bool(shape), skip_nan=nan == "skip", clipped_at=(low, high))
         if x is not None:
             made.push(x)
         return made
+
+    def merge(self, other: Moments) -> None:
+        """Add what another object has seen, as if it came after this one's samples."""
+        same_kind(other, Moments)
+        super().merge(other)
 
     def describe(self) -> Description:
         """Return everything at once.

@@ -6,7 +6,7 @@ from typing import Literal
 
 from .. import _core
 from .._arrays import number
-from .._stream import Stream
+from .._stream import Stream, same_kind
 from ..errors import ParameterError
 
 
@@ -42,6 +42,15 @@ class QuantileSketch(Stream, _core.QuantileSketch):
 
     def __new__(cls, relative_error: float = 0.01) -> QuantileSketch:  # noqa: D102
         return super().__new__(cls, number("relative_error", relative_error))
+
+    def quantile(self, q: float) -> float | None:
+        """Return the quantile of the share ``q``, 0 to 1, within the bound; None of nothing."""
+        return super().quantile(number("q", q))
+
+    def merge(self, other: QuantileSketch) -> None:
+        """Add the samples another sketch has seen."""
+        same_kind(other, QuantileSketch)
+        super().merge(other)
 
     def __repr__(self) -> str:
         return f"<luztar.stats.QuantileSketch: {self.count} samples, within {100 * self.relative_error:.3g} %>"
@@ -82,6 +91,11 @@ class Counts(Stream, _core.Counts):
             return None
         low, high, between = found
         return float(low if method == "lower" else low + (high - low) * between)
+
+    def merge(self, other: Counts) -> None:
+        """Add the samples another object has counted."""
+        same_kind(other, Counts)
+        super().merge(other)
 
     def __repr__(self) -> str:
         return f"<luztar.stats.Counts: {self.count} samples from {self.min} to {self.max}>"

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from ..measurement.run import Run
 
 _DEFAULT = "TB 038 v1.0"
+# Friction is reversed where its mean is below minus half its own standard deviation in both directions. A channel that
+# shows noise alone stays within: of a crossing of two seconds or more the 6 Hz filter leaves 24 independent values, so
+# that half a deviation is 2.4 standard errors, and both directions must be beyond.
+REVERSED_DEVIATIONS = 0.5
 
 
 def evaluate(
@@ -161,13 +165,19 @@ def _verifications(
 
 def _refuse_reversed(verifications: Sequence[Verification]) -> None:
     for increasing, decreasing in _by_run(verifications):
-        if (increasing.mean_nm or 0.0) < 0.0 and (decreasing.mean_nm or 0.0) < 0.0:
+        if _clearly_negative(increasing) and _clearly_negative(decreasing):
             raise MeasurementError(
                 f"torque sign reversed: the friction is {increasing.mean_nm:.3g} Nm with increasing and "
                 f"{decreasing.mean_nm:.3g} Nm with decreasing angle, as if the robot turned the wheel",
                 increasing.run,
                 'Turn the sign of the torque: --map torque="COLUMN*-1" (force: --map force="COLUMN*-1").',
             )
+
+
+def _clearly_negative(v: Verification) -> bool:
+    if v.mean_nm is None or v.std_nm is None:
+        return False
+    return v.mean_nm < -REVERSED_DEVIATIONS * v.std_nm
 
 
 def _filter_use(

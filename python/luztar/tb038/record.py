@@ -83,13 +83,24 @@ class Record:
 class _Doubts:
     by_direction: dict[int, list[Doubt]] = field(default_factory=lambda: {d: [] for d in BOTH})
 
+    crossings: dict[tuple[int, str], list[tuple[float, str]]] = field(default_factory=dict)
+
     def add(self, direction: int, kind: str, text: str) -> None:
         doubt = Doubt(kind, text)
         for each in (direction,) if direction else BOTH:
             if doubt not in self.by_direction[each]:
                 self.by_direction[each].append(doubt)
 
+    def add_crossing(self, direction: int, kind: str, size: float, text: str) -> None:
+        """Add what may be wrong with several crossings: the worst of them is spoken of."""
+        self.crossings.setdefault((direction, kind), []).append((size, text))
+
     def frozen(self) -> dict[int, tuple[Doubt, ...]]:
+        for (direction, kind), found in self.crossings.items():
+            _, text = max(found)
+            more = f" (the worst of {len(found)} such crossings)" if len(found) > 1 else ""
+            self.add(direction, kind, f"{text}{more}")
+        self.crossings.clear()
         return {direction: tuple(found) for direction, found in self.by_direction.items()}
 
 
@@ -121,12 +132,18 @@ def prepare(run: Run, rules: RuleSet, link_distance_m: float) -> Record:
         else:
             notes.append(f"{broken.text}, outside the window")
     pieces = []
+    left_out: list[float] = []
     for part in parts:
         piece = _filtered(run.time_s, raw_deg, source.torque_nm, part, rules, doubts)
         if piece is not None:
             pieces.append(piece)
             for crossing in piece.crossings:
-                _doubt_crossing(crossing, piece, part, run, source.channel, rules, doubts, notes)
+                _doubt_crossing(crossing, piece, part, run, source.channel, rules, doubts, left_out)
+    if len(left_out) == 1:
+        notes.append(f"a crossing ends at {left_out[0]:.1f} deg, before the far edge, and is left out")
+    elif left_out:
+        first = f"the first at {left_out[0]:.1f} deg"
+        notes.append(f"{len(left_out)} crossings end before the far edge, {first}, and are left out")
     for direction, word in ((1, "increasing"), (-1, "decreasing")):
         if not any(c.full and c.direction == direction for p in pieces for c in p.crossings):
             half = rules.half_width_deg
@@ -197,7 +214,7 @@ def _doubt_crossing(
     torque_channel: str,
     rules: RuleSet,
     doubts: _Doubts,
-    notes: list[str],
+    left_out: list[float],
 ) -> None:
     from_s, to_s = (float(piece.time_s[i]) for i in (crossing.inside[0], crossing.inside[-1]))
     way = crossing.direction
@@ -209,25 +226,27 @@ def _doubt_crossing(
         doubts.add(way, "broken", f"the record is broken just before {from_s:.3f} s, at {crossing.start_deg:.1f} deg")
     elif not crossing.starts_beyond:
         start = rules.section("start")
-        doubts.add(way, "start", f"a crossing starts at {crossing.start_deg:.1f} deg, inside the window ({start})")
+        inside_deg = rules.half_width_deg + way * crossing.start_deg
+        text = f"a crossing starts at {crossing.start_deg:.1f} deg, inside the window ({start})"
+        doubts.add_crossing(way, "start", inside_deg, text)
     if near_end:
         doubts.add(way, "broken", f"the record is broken just after {to_s:.3f} s, at {crossing.end_deg:.1f} deg")
     elif crossing.starts_beyond and not crossing.ends_beyond:
         # Returning the wheel to the middle at the end is no test: it is neither pooled nor held against the run.
-        notes.append(f"a crossing ends at {crossing.end_deg:.1f} deg, before the far edge, and is left out")
+        left_out.append(crossing.end_deg)
         return
     if _crossings.too_fast(crossing.max_speed_deg_s, rules):
         limit = f"over {rules.speed_max_deg_s:g} deg/s ({rules.section('speed')})"
-        doubts.add(way, "speed", f"{crossing.max_speed_deg_s:.1f} deg/s inside the window, {limit}")
+        speed = crossing.max_speed_deg_s
+        doubts.add_crossing(way, "speed", speed, f"{speed:.1f} deg/s inside the window, {limit}")
     if crossing.turned_back_deg > _crossings.TURN_BACK_DEG:
-        doubts.add(way, "turned_back", f"the wheel turned back by {crossing.turned_back_deg:.1f} deg inside the window")
+        back = crossing.turned_back_deg
+        doubts.add_crossing(way, "turned_back", back, f"the wheel turned back by {back:.1f} deg inside the window")
     for finding in run.integrity.doubtful:
         concerned = finding.channel in (None, "time", "angle", torque_channel)
         if finding.kind == "uneven" or _split_here(finding) or not concerned:
             continue
         if finding.from_s is None and finding.to_s is None:
             continue
-        begins = finding.from_s if finding.from_s is not None else -np.inf
-        ends = finding.to_s if finding.to_s is not None else np.inf
-        if begins <= to_s + margin_s and ends >= from_s - margin_s:
+        if finding.concerns(from_s - margin_s, to_s + margin_s):
             doubts.add(way, "data", finding.text)

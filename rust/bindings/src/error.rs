@@ -20,10 +20,20 @@ impl From<CoreError> for PyErr {
     }
 }
 
+/// A number in at most as many digits as it has: 1e308, not 309 of them.
+fn shown(value: f64) -> String {
+    if value != 0.0 && value.is_finite() && !(1e-4..1e16).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
 /// What is wrong, where, and what to do: the three parts every error of the Python side has.
 fn parts(error: luztar::Error) -> (String, String, String) {
     use luztar::Error::{
-        Length, NonFinite, OutOfRange, Singular, TooMany, Unknown, Unlike, Unrepresentable,
+        Length, Mechanism, NonFinite, OutOfRange, Singular, TooMany, Unknown, Unlike,
+        Unrepresentable,
     };
     match error {
         NonFinite { name, index, value } => (
@@ -36,7 +46,7 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             value,
             interval,
         } => (
-            format!("{name} is {value} but must lie in {interval}"),
+            format!("{name} is {}", shown(value)),
             name.to_owned(),
             format!("Give a value in {interval}."),
         ),
@@ -54,6 +64,11 @@ fn parts(error: luztar::Error) -> (String, String, String) {
             what.to_owned(),
             format!("Known are: {known}."),
         ),
+        Mechanism {
+            place,
+            problem,
+            remedy,
+        } => (problem, place, remedy),
         Unlike { what } => (
             format!("{what} cannot be merged"),
             "merge".to_owned(),

@@ -9,6 +9,7 @@ mod dynamics;
 mod effects;
 mod error;
 mod interruptible;
+mod mechanism;
 mod oracle;
 mod projections;
 mod regression;
@@ -33,6 +34,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::effects::effect_cards;
+    #[pymodule_export]
+    use crate::mechanism::{Mechanism, MechanismStepper, hold_or_slide};
     #[pymodule_export]
     use crate::oracle::{sampled_cubics, solve_bodies_exactly, solve_steering_exactly};
     #[pymodule_export]

@@ -38,6 +38,7 @@ mod watched;
 pub use bristle::Bristle;
 pub use control::Control;
 pub use drive::Drive;
+pub(crate) use drive::{MOST_STEPS, Refinement};
 pub use events::{Event, EventKind};
 pub use ground::Ground;
 pub use keep::{ENERGIES, Keep, SUMMARY};

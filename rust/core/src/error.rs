@@ -47,6 +47,16 @@ pub enum Error {
         /// The names that exist.
         known: String,
     },
+    /// A mechanism that makes no sense, or a step that it does not allow.
+    #[error("{place}: {problem}; {remedy}")]
+    Mechanism {
+        /// The body, the element or the instant.
+        place: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
     /// Two objects that cannot be merged.
     #[error("{what} cannot be merged; make both with the same settings")]
     Unlike {

@@ -7,6 +7,7 @@ pub mod driven;
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+pub mod mechanism;
 pub mod projections;
 pub mod regression;
 pub mod signal;

@@ -24,7 +24,7 @@ pub struct Drive {
 }
 
 /// Sub-steps of a record: both channels refined are 4 GiB.
-const MOST_STEPS: usize = 1 << 27;
+pub(crate) const MOST_STEPS: usize = 1 << 27;
 
 /// One channel over one sub-step: at its start, middle and end.
 #[derive(Debug, Clone, Copy)]
@@ -176,7 +176,7 @@ impl Drive {
 
 /// The cubic through the four nearest samples at the starts, middles and ends of the sub-steps of an interval.
 #[derive(Debug, Clone)]
-pub(super) struct Refinement {
+pub(crate) struct Refinement {
     /// Lagrange's weights of the four samples at every half sub-step.
     weights: Vec<[f64; 4]>,
 }
@@ -249,7 +249,7 @@ impl Refinement {
     }
 
     /// All values of a record and its last sample.
-    fn refine(&self, samples: &[f64]) -> Vec<f64> {
+    pub fn refine(&self, samples: &[f64]) -> Vec<f64> {
         let (last, parts) = (samples.len() - 1, self.weights.len());
         let mut out = Vec::with_capacity(last * parts + 1);
         for interval in 0..last {
