@@ -17,7 +17,7 @@ from .weights import KEYS, Weights, weights_at
 SCHEMA = 1
 # Section: the keys that it may hold.
 TOP = ("schema", "manoeuvre", "length_m", "speed_m_s", "car", "form", "steer", "limit_m_s2", "model", "tyre", "step_s")
-SECTIONS = {
+SECTIONS: dict[str, tuple[str, ...] | None] = {
     "track": None,
     "vary": None,
     "weights": (*KEYS, "table"),
@@ -83,8 +83,8 @@ def load(path: str | Path, **others: Any) -> Study:
             raise ModelError(f"'{key}' is not known", where, f"Known are: {', '.join([*TOP, *SECTIONS])}.")
         if (key in SECTIONS) != isinstance(value, dict):
             raise ModelError(f"'{key}' is {value!r}", where, "Write [sections] as sections and values as values.")
-        known = SECTIONS.get(key)
-        for inner in value if isinstance(value, dict) and known else ():
+        known = SECTIONS.get(key) or ()
+        for inner in value if known else ():
             if inner not in known:
                 raise ModelError(f"[{key}] does not know '{inner}'", where, f"Known are: {', '.join(known)}.")
     read |= others

@@ -176,8 +176,8 @@ def _guess(form: Form, waves: list[HalfWave]) -> np.ndarray:
     if form.name == "two_sines" and len(waves) == 3:
         over = waves[1]
         middle = 0.5 * (over.from_s + over.to_s)
-        halves = (HalfWave(over.from_s, middle, over.extreme), HalfWave(middle, over.to_s, over.extreme))
-        waves = [waves[0], *halves, waves[2]]
+        parts = (HalfWave(over.from_s, middle, over.extreme), HalfWave(middle, over.to_s, over.extreme))
+        waves = [waves[0], *parts, waves[2]]
     if form.name == "three_halves" and len(waves) == 4:
         waves = [waves[0], HalfWave(waves[1].from_s, waves[2].to_s, waves[1].extreme), waves[3]]
     made = [waves[0].from_s]
