@@ -116,14 +116,12 @@ def _write(
     try:
         from jinja2 import Environment, FileSystemLoader, StrictUndefined
         from markupsafe import Markup
-        from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingError("a report needs jinja2 and plotly", "report", "pip install jinja2 plotly") from error
     target = Path(path)
     if not target.parent.is_dir():
         raise ParameterError("there is no such folder", str(target.parent), "Make it first.")
-    plotly_js = embed.safe_script(get_plotlyjs())
-    draw_js = embed.safe_script((HERE / "draw.js").read_text(encoding="utf-8"))
+    plotly_js, draw_js = embed.library(), embed.drawing()
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
@@ -139,7 +137,7 @@ def _write(
             "css": Markup((HERE / "report.css").read_text(encoding="utf-8")),
             "result": Markup(embed.safe_json(result.to_dict())),
             "drawn": Markup(embed.safe_json({key: values(make()) for key, _, _, make in shown})),
-            "plotly_js": Markup(plotly_js),
+            "plotly_packed": Markup(embed.packed(plotly_js)),
             "draw_js": Markup(draw_js),
             "script_hashes": Markup(f"{embed.script_hash(plotly_js)} {embed.script_hash(draw_js)}"),
         }
