@@ -43,6 +43,7 @@ MAY_IMPORT = {
     "mechanism": FOUNDATION,
     "projections": FOUNDATION,
     "vehicle": FOUNDATION | {"dynamics"},
+    "manoeuvre": FOUNDATION | {"dynamics", "vehicle"},
     "diagnosis": FOUNDATION | {"measurement", "model"},
     "freerun": FOUNDATION | {"diagnosis", "dynamics", "measurement", "model", "vehicle"},
     "planning": FOUNDATION | {"diagnosis", "measurement", "model"},
@@ -55,6 +56,7 @@ NEVER = {
     "diagnosis": {"cli", "app"},
     "freerun": {"cli", "app", "report", "tb038"},
     "planning": {"cli", "app", "tb038"},
+    "manoeuvre": {"cli", "app", "diagnosis", "tb038"},
     "report": {"cli", "app"},
 }
 

@@ -14,6 +14,7 @@ from ._core import __version__ as __version__
 if TYPE_CHECKING:
     from . import dynamics as dynamics
     from . import effects as effects
+    from . import manoeuvre as manoeuvre
     from . import measurement as measurement
     from . import mechanism as mechanism
     from . import model as model
@@ -43,6 +44,7 @@ _LAZY: dict[str, str] = {
     "dynamics": "dynamics",
     "effects": "effects",
     "fit": "diagnosis:fit",
+    "manoeuvre": "manoeuvre",
     "measurement": "measurement",
     "mechanism": "mechanism",
     "model": "model",

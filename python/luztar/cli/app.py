@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from . import exits
+from .manoeuvre import manoeuvre
 from .options import Band, Debug, Files, HeldOut, Json, Map, ModelName, Report, Resample, Unit
 
 app = typer.Typer(
@@ -18,6 +19,8 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+app.add_typer(manoeuvre)
 
 
 def _version(wanted: bool) -> None:
