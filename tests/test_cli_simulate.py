@@ -57,7 +57,7 @@ def test_a_page_shows_every_run(model, tmp_path):
     done = luztar("simulate", model, tmp_path / "<b>one.csv", tmp_path / "two.csv", "--report", page)
     assert done.code == 0, done.err
     text = page.read_text(encoding="utf-8")
-    assert text.count("plotly-graph-div") == 2 and "&lt;b&gt;one.csv" in text and "<b>one" not in text
+    assert text.count("data-figure=") == 2 and "&lt;b&gt;one.csv" in text and "<b>one" not in text
     assert luztar("simulate", model, "--sine", 1, 1, "--report", tmp_path).code == 3
 
 

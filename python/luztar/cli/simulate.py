@@ -141,17 +141,12 @@ def _write(place: Path | None, traced: Any) -> None:
 
 
 def _write_page(path: str, made: list[tuple[str, float, Any]]) -> None:
-    from html import escape
-
     from ..report.leaf import write_leaf
 
     text = "\n\n".join(f"{name}: {traced}" for name, _, traced in made)
-    parts = []
-    for name, _, traced in made:
-        # The scripts stand once in the page, with the first picture.
-        picture = traced.figure().to_html(full_html=False, include_plotlyjs=not parts)
-        parts.append(f"<h2>{escape(name)}</h2>\n{picture}")
-    written(path, lambda: write_leaf(path, "Free runs" if len(made) > 1 else "Free run", text, "\n".join(parts)))
+    pictures = [(name, traced.figure()) for name, _, traced in made]
+    title = "Free runs" if len(made) > 1 else "Free run"
+    written(path, lambda: write_leaf(path, title, text, pictures, "This figure is drawn by the browser."))
 
 
 def _as_json(name: str, rate_hz: float, traced: Any) -> dict[str, Any]:

@@ -1,8 +1,9 @@
-"""A page of one leaf: a text as it prints itself, and a picture below it."""
+"""A page of one leaf: a text as it prints itself, and its pictures below it."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -21,13 +22,18 @@ def write_leaf(path: str | os.PathLike[str], title: str, text: str, figure: Any 
         An existing file is replaced.
     title, text : str
         Plain text; escaped here.
-    figure : plotly Figure, optional
+    figure : plotly Figure, or sequence of (heading, plotly Figure), optional
     instead : str
-        Plain text in the figure's place where there is none, or no script may run.
+        Plain text in the place of a figure where there is none, or no script may run.
     """
-    picture = f'<div data-figure="picture" role="img">{escape(instead)}</div>\n'
+    named: Sequence[tuple[str, Any]] = figure if isinstance(figure, (list, tuple)) else [("", figure)]
+    picture = "".join(
+        (f"<h2>{escape(heading)}</h2>\n" if heading else "")
+        + f'<div data-figure="picture{number}" role="img">{escape(instead)}</div>\n'
+        for number, (heading, _) in enumerate(named)
+    )
     if figure is not None:
-        data = embed.safe_json({"picture": values(figure)})
+        data = embed.safe_json({f"picture{number}": values(drawn) for number, (_, drawn) in enumerate(named)})
         picture += (
             f'<script type="application/json" id="luztar-figures">{data}</script>\n'
             f'<script type="application/gzip" id="luztar-plotly">{embed.packed(embed.library())}</script>\n'
