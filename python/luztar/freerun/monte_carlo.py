@@ -17,7 +17,7 @@ from ..dynamics import COLUMNS, Summary, sample, summarise
 from ..errors import ModelError, ParameterError
 from ..model import Model
 from ..model.steering_words import SHORT_KEYS
-from .parameters import keys_of
+from .plant import keys_of
 from .run_model import OPTIONAL, substeps_for
 
 SCHEMA = 1
