@@ -9,7 +9,7 @@ import pytest
 
 from command_line import luztar
 
-COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "simulate", "explain")
+COMMANDS = ("demo", "tb038", "compare", "diagnose", "study", "fit", "plan", "simulate", "explain", "manoeuvre")
 
 OPTIONS = {
     "demo": "--out --json --debug",
@@ -21,6 +21,7 @@ OPTIONS = {
     "plan": "--structure --encoder-deg --step-m --rate --speed --speeds --angle --travel-m --runs --strokes --minutes "
     "--noise --friction --json --report --debug",
     "simulate": "--sine --seconds --rate --out --map --unit --resample --json --debug",
+    "manoeuvre": "optimise robust sensitivity map",
     "explain": "--json --debug",
 }
 

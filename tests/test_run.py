@@ -54,13 +54,13 @@ def test_arrays_are_copies_that_nobody_can_write():
         ({"angle": ANGLE}, "time"),
         ({"time": TIME, "sample_rate_hz": 100, "angle": ANGLE}, "time"),
         ({"time": TIME, "angle": ANGLE[1:]}, "angle"),
-        ({"time": TIME, "speed": ANGLE}, "speed"),
+        ({"time": TIME, "pace": ANGLE}, "pace"),
         ({"time": TIME, "angle": ANGLE.astype(complex)}, "angle"),
         ({"time": TIME, "angle": ANGLE.reshape(1, -1)}, "angle"),
         ({"time": [0.0], "angle": [1.0]}, "time"),
         ({"sample_rate_hz": 0, "angle": ANGLE}, "sample_rate_hz"),
         ({"sample_rate_hz": float("nan"), "angle": ANGLE}, "sample_rate_hz"),
-        ({"time": TIME, "angle": ANGLE, "units": {"speed": "m"}}, "units"),
+        ({"time": TIME, "angle": ANGLE, "units": {"pace": "m"}}, "units"),
     ],
 )
 def test_arguments_that_make_no_run_are_named(arguments, where):

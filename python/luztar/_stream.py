@@ -1,7 +1,8 @@
-"""What every object that is pushed into can do besides: copy, pickle, and a state that fits into JSON."""
+"""Copies, pickles and states: of what is pushed into, in a form that fits into JSON, and of results."""
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Any, Self
 
 from .errors import ParameterError
@@ -18,6 +19,19 @@ def same_kind(other: Any, kind: type) -> None:
     """
     if not isinstance(other, kind):
         raise ParameterError(f"other is of the type {type(other).__name__}", "other", f"Give another {kind.__name__}.")
+
+
+class Mappings:
+    """Lets a frozen result with read-only mappings be copied and pickled: those are written as plain dicts."""
+
+    __slots__ = ()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {k: dict(v) if isinstance(v, MappingProxyType) else v for k, v in vars(self).items()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, MappingProxyType(value) if isinstance(value, dict) else value)
 
 
 class Stream:

@@ -11,7 +11,7 @@ from .options import Debug, Json, Report
 
 manoeuvre = typer.Typer(
     name="manoeuvre",
-    help="The double lane change: the best signal, and what freeplay, friction and other parameters do to it.",
+    help="Optimise a double lane change and disturb it.",
     epilog="Exit codes: 0 done, 2 no signal within the limits (optimise), 3 usage or input error, 4 internal error.",
     rich_markup_mode=None,
     no_args_is_help=True,

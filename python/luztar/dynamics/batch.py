@@ -259,6 +259,7 @@ def _run(
                 for a, place in zip((rows, phi, speed), places, strict=True):
                     a[part] = place
             done[part] = finished
+        lanes.require_bounded(part, places[1 if wanted.trace else 0])
         tell(before + part.size)
 
 

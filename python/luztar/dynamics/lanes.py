@@ -130,6 +130,21 @@ def rate(sample_rate_hz: Any) -> float:
     return value
 
 
+def require_bounded(index: np.ndarray, values: np.ndarray) -> None:
+    """Refuse lanes whose results, one row each, are not finite.
+
+    The longest step follows from the springs at rest; what grows with the speed may ask for a shorter one.
+    """
+    # A sum of finite numbers is finite, short of the end of the doubles.
+    wrong = np.flatnonzero(~np.isfinite(values.sum(axis=1)))
+    if wrong.size:
+        raise ParameterError(
+            f"the motion of lane {index[wrong[0]]} grows beyond all bounds",
+            "substeps",
+            "Take more substeps: drag at this speed, or a hardening spring, asks for a shorter step.",
+        )
+
+
 def check_method(method: str) -> None:
     """Refuse a method that is not there."""
     if method not in METHODS:

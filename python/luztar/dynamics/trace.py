@@ -46,6 +46,7 @@ def trace(
     phi, speed, friction, events, energies = _core.trace_steering(
         rows, start, psi, load, sample_rate_hz=rate, substeps=steps, method=method
     )
+    lanes.require_bounded(np.arange(1), phi[np.newaxis])
     return Trace(
         time_s=np.arange(psi.size) / rate,
         roadwheel_rad=phi,

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from .._stream import Mappings
+
 EVENT_KINDS = ("stick", "slip", "reversal", "contact", "release")
 # Of the energy turned over; the residual is of second order in the step, so that a step a third as long has a tenth.
 LARGEST_RESIDUAL = 0.01
@@ -70,7 +72,7 @@ class Event:
 
 
 @dataclass(frozen=True)
-class Trace(Trajectory):
+class Trace(Mappings, Trajectory):
     """What :func:`trace` returns: a trajectory with its events and energies.
 
     Attributes

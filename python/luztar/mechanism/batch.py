@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .. import _core
 from .._arrays import vector
-from ..errors import ParameterError
+from ..errors import Interrupted, ParameterError
 from . import drives as door
 from .mechanism import Mechanism, lane_table
 
+T = TypeVar("T")
 # Steps between two looks for an interrupt: 0.3 us each, 0.2 s on one thread.
 CHUNK_STEPS = 600_000
 
@@ -78,6 +79,8 @@ def simulate_lanes(
     ------
     ParameterError
         As :func:`simulate`, with the number of the lane.
+    Interrupted
+        A ``KeyboardInterrupt`` that carries the lanes that were done by then.
 
     Examples
     --------
@@ -92,16 +95,20 @@ def simulate_lanes(
     batch = _Batch(mechanism, parameters, drives, sample_rate_hz, seconds, start, start_speed, substeps)
     samples = batch.rows.shape[1]
     place, speed = (np.empty((batch.lanes, len(mechanism.bodies), samples)) for _ in range(2))
-    for part in batch.parts(progress):
+
+    def run(part: slice) -> None:
         mechanism._network.simulate(
             batch.table[part], *batch.given, **batch.options, first=part.start, place=place[part], speed=speed[part]
         )
-    names = [b.name for b in mechanism.bodies]
-    return Lanes(
-        np.arange(samples) / batch.options["sample_rate_hz"],
-        {name: place[:, i] for i, name in enumerate(names)},
-        {name: speed[:, i] for i, name in enumerate(names)},
-    )
+
+    def result(lanes: slice) -> Lanes:
+        return Lanes(
+            np.arange(samples) / batch.options["sample_rate_hz"],
+            {b.name: place[lanes, i] for i, b in enumerate(mechanism.bodies)},
+            {b.name: speed[lanes, i] for i, b in enumerate(mechanism.bodies)},
+        )
+
+    return batch.over(run, result, progress)
 
 
 def summarise_lanes(
@@ -128,7 +135,7 @@ def summarise_lanes(
 
     Raises
     ------
-    ParameterError
+    ParameterError, Interrupted
         As :func:`simulate_lanes`.
 
     Examples
@@ -143,9 +150,17 @@ def summarise_lanes(
     batch = _Batch(mechanism, parameters, drives, sample_rate_hz, seconds, start, start_speed, substeps)
     names = _core.Mechanism.summary_names()
     out = np.empty((batch.lanes, len(mechanism.bodies), len(names)))
-    for part in batch.parts(progress):
+
+    def run(part: slice) -> None:
         mechanism._network.summarise(batch.table[part], *batch.given, **batch.options, first=part.start, out=out[part])
-    return {b.name: {name: out[:, i, j].copy() for j, name in enumerate(names)} for i, b in enumerate(mechanism.bodies)}
+
+    def result(lanes: slice) -> dict[str, dict[str, np.ndarray]]:
+        return {
+            b.name: {name: out[lanes, i, j].copy() for j, name in enumerate(names)}
+            for i, b in enumerate(mechanism.bodies)
+        }
+
+    return batch.over(run, result, progress)
 
 
 class _Batch:
@@ -179,10 +194,22 @@ class _Batch:
         self.given = (self.rows, *starts)
         self.options = {"sample_rate_hz": rate, "substeps": door.parts(mechanism, 1.0 / rate, substeps)}
 
-    def parts(self, progress: Callable[[int, int], None] | None) -> Iterator[slice]:
-        """Yield slices of lanes; between them an interrupt is heard."""
+    def over(
+        self,
+        run: Callable[[slice], None],
+        result: Callable[[slice], T],
+        progress: Callable[[int, int], None] | None,
+    ) -> T:
+        """Run slices of lanes; between them an interrupt is heard, and what was done by then is kept."""
         chunk = max(1, int(CHUNK_STEPS // (self.rows.shape[1] * self.options["substeps"])))
-        for first in range(0, self.lanes, chunk):
-            yield slice(first, min(first + chunk, self.lanes))
-            if progress is not None:
-                progress(min(first + chunk, self.lanes), self.lanes)
+        done = 0
+        try:
+            while done < self.lanes:
+                last = min(done + chunk, self.lanes)
+                run(slice(done, last))
+                done = last
+                if progress is not None:
+                    progress(done, self.lanes)
+        except KeyboardInterrupt:
+            raise Interrupted(result(slice(0, done)), np.arange(done), self.lanes) from None
+        return result(slice(0, done))

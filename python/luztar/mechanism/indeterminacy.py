@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .._stream import Mappings
 from .mechanism import Mechanism
 from .parts import Friction
 
@@ -24,7 +25,7 @@ _UNIQUE = 1e-9
 
 
 @dataclass(frozen=True)
-class Indeterminacy:
+class Indeterminacy(Mappings):
     """How the torques of frictions that hold may be split.
 
     Attributes

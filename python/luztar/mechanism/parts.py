@@ -38,6 +38,10 @@ def spelt(parameter: str, unit: str) -> str:
 def _settle(part: Any, numbers: tuple[str, ...]) -> None:
     if not isinstance(part.name, str):
         raise ParameterError(f"a name is {part.name!r}", "name", "Give a text.")
+    for field in ("a", "b", "on", "senses"):
+        end = getattr(part, field, "")
+        if not isinstance(end, str):
+            raise ParameterError(f"its {field} is {end!r}", part.name, "Give the name of one body, node or element.")
     unit = getattr(part, "unit", "rad")
     if unit not in UNITS:
         raise ParameterError(f"its unit is {unit!r}", part.name, "Give rad or m.")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .._stream import Mappings
 from ..errors import ParameterError
 from .indeterminacy import Indeterminacy, indeterminacy
 from .mechanism import Mechanism
@@ -43,7 +44,7 @@ class Event:
 
 
 @dataclass(frozen=True, repr=False)
-class MechanismRun:
+class MechanismRun(Mappings):
     """What :func:`simulate` returns.
 
     Attributes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from typing import Any, Self
 
@@ -112,11 +113,19 @@ class Stepper(Stream):
         Raises
         ------
         ParameterError
-            A value that is not finite, or a wrong number of them; the state is as it was.
+            A value that is not finite, or a wrong number of them: the state is as it was. A motion that grows beyond
+            all bounds.
         """
         if type(channels) is not np.ndarray or channels.dtype != np.float64 or not channels.flags.c_contiguous:
             channels = vector("channels", channels, minimum=0)
         self._step(channels, self.position, self.speed)
+        # The sum of what is finite is finite, short of the end of the doubles: one look for all of them.
+        if not math.isfinite(self.speed.sum()):
+            raise ParameterError(
+                f"at {self.time_s:g} s the motion has grown beyond all bounds",
+                "step_s",
+                "Make the stepper anew with a shorter step: drag, hardening and assistance ask for it at high speed.",
+            )
 
     def torque(self, element: str) -> float:
         """Return the torque or force along an element; of a friction that holds the one of equilibrium.
