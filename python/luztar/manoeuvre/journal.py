@@ -79,6 +79,8 @@ class Journal:
             raise ParameterError(f"{path} is no journal of a study", "journal", remedy) from None
         if not made or not all(isinstance(line, dict) for line in made) or "study" not in made[0]:
             raise ParameterError(f"{path} is no journal of a study", "journal", remedy)
+        if not all(isinstance(line.get("value"), (dict, list)) for line in made[1:] if "cell" in line):
+            raise ParameterError(f"{path} holds a cell without a value", "journal", remedy)
         if made[0] != self.head:
             other = made[0].get("luztar") if made[0].get("luztar") != self.head["luztar"] else None
             what = f"luztar {other}" if other else "another study"

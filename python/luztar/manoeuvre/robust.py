@@ -241,6 +241,8 @@ def robust(
         if (values < 0.0).any() or (np.diff(values) <= 0.0).any():
             raise ParameterError(f"{name} is {values.tolist()}", name, "Give ascending values, 0 or above.")
         sets[name] = np.array(values)
+    if not isinstance(fine, (tuple, list)) or len(fine) != 2:
+        raise ParameterError(f"fine is {fine!r}", "fine", "Give two whole numbers: freeplays and frictions.")
     counts = [whole_number("fine", n, 1, 1000) for n in fine]
     whole_number("seed", seed, 0, LARGEST_SEED)
     half, friction = sets.values()

@@ -17,6 +17,8 @@ from .signals import Pieces
 # Share of the steady value at which a response is counted as having come.
 RESPONDED = 0.9
 START_S = 0.5
+# Of the largest value: what changes by more over the last tenth of the time is not steady.
+STEADY = 0.02
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def step_steer(
     Raises
     ------
     ParameterError
-        As :func:`simulate`; an angle of 0.
+        As :func:`simulate`; an angle of 0; a car that does not come to a steady turn.
     """
     angle, rise = number("handwheel_rad", handwheel_rad), number("rise_s", rise_s)
     if angle == 0.0:
@@ -115,6 +117,14 @@ def step_steer(
         vary=vary,
     )
     since = run.time_s - START_S - 0.5 * rise
+    steady = _comes_to_rest(run.yaw_rate_rad_s) & np.atleast_1d(run.x_m[..., -1] != run.x_m[..., -2])
+    if not steady.all():
+        which = f" of car {int(np.argmin(steady))}" if steady.size > 1 else ""
+        raise ParameterError(
+            f"the yaw rate{which} does not become steady within {duration_s:g} s, or the car spins",
+            "handwheel_rad",
+            "Turn less, drive slower, or give a longer duration_s: gain and overshoot refer to the steady value.",
+        )
     yaw = step_figures(since, run.yaw_rate_rad_s)
     side = step_figures(since, run.lateral_acceleration_m_s2)
     last = run.time_s >= run.time_s[-1] - 0.1 * duration_s
@@ -133,6 +143,13 @@ def step_steer(
         sideslip_rad=sideslip,
         tb_factor_s_rad=yaw["peak"] * np.abs(sideslip),
     )
+
+
+def _comes_to_rest(response: np.ndarray) -> np.ndarray:
+    """Whether responses (n,) or (cars, n) change by less than :data:`STEADY` over their last tenth."""
+    rows = np.atleast_2d(response)
+    tail = rows[:, -max(2, rows.shape[1] // 10) :]
+    return np.ptp(tail, axis=1) <= STEADY * np.abs(rows).max(axis=1)
 
 
 def step_figures(time_s: np.ndarray, response: np.ndarray) -> dict[str, Any]:
