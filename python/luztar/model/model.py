@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from .. import _core
 from ..errors import ModelError
 from .cards import card, own_cards
 from .steering_words import SHORT_KEYS
@@ -204,6 +205,10 @@ class Model:
         wrong = sorted(wanted - own)
         if wrong:
             raise ModelError(f"there is no '{wrong[0]}'", "Model.car", f"Known are: {', '.join(sorted(own))}.")
+        of_cars = set(_core.car_names()[0]) | own
+        unknown = sorted(set(known) - of_cars)
+        if unknown:
+            raise ModelError(f"there is no '{unknown[0]}'", "Model.car", f"Known are: {', '.join(sorted(of_cars))}.")
         given = {k: v for k, v in known.items() if k in own}
         start = {k: v for k, v in given.items() if k in wanted}
         return cls("car", structure("car").effects, {k: v for k, v in given.items() if k not in wanted}, start)
