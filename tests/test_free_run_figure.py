@@ -1,7 +1,5 @@
 """The figure of a free run: rests shaded, friction over speed on the law, energies that add up; drawn by a browser."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -64,28 +62,22 @@ def test_a_run_that_never_moves_and_one_without_rest_have_a_figure():
     assert len(swings.figure().layout.shapes) == 0
 
 
-def test_a_browser_draws_it_without_a_word(run, tmp_path):
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    if found is None:
-        pytest.skip("no Chromium is installed")
+def test_a_browser_draws_it_without_a_word(run, tmp_path, browser):
     path = tmp_path / "run.html"
     run.figure().write_html(path)
-    with playwright.sync_playwright() as p:
-        browser = p.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1100, "height": 940})
-        said = []
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.goto(path.as_uri())
-        page.wait_for_selector(".main-svg .scatterlayer .trace", state="attached", timeout=60_000)
-        page.wait_for_timeout(300)
-        # No title or label may lie on another.
-        boxes = page.evaluate(
-            "[...document.querySelectorAll('.annotation-text, .xtitle, .ytitle, .legendtext')].map(e => {"
-            " const b = e.getBoundingClientRect(); return [e.textContent, b.left, b.top, b.right, b.bottom]})"
-        )
-        browser.close()
+    page = browser.new_page(viewport={"width": 1100, "height": 940})
+    said = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(path.as_uri())
+    page.wait_for_selector(".main-svg .scatterlayer .trace", state="attached", timeout=60_000)
+    page.wait_for_timeout(300)
+    # No title or label may lie on another.
+    boxes = page.evaluate(
+        "[...document.querySelectorAll('.annotation-text, .xtitle, .ytitle, .legendtext')].map(e => {"
+        " const b = e.getBoundingClientRect(); return [e.textContent, b.left, b.top, b.right, b.bottom]})"
+    )
+    page.close()
     assert said == []
     assert len(boxes) > 10
     for i, (name, left, top, right, bottom) in enumerate(boxes):

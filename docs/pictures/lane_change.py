@@ -6,22 +6,17 @@ folder the journals of the studies are kept there: the first time takes minutes,
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from playwright.sync_api import sync_playwright
-from plotly.offline import get_plotlyjs
+from screenshot import screenshot
 
 from luztar.manoeuvre import Robustness, load, optimise, robust
-from luztar.report import embed
-from luztar.report.figures_of import values
 from luztar.report.manoeuvre_figures import drives, table
 from luztar.report.style import AFTER, BEFORE, dressed, numbers, panels
 
-WIDTH = 960
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parents[1] / "examples"
 
@@ -65,23 +60,6 @@ def excitations(found: dict[str, dict[str, Robustness]]) -> Any:
     return dressed(picture, height=640, legend=True)
 
 
-def take(browser: Any, name: str, figure: Any) -> None:
-    """Draw a figure and keep it as a PNG."""
-    made = embed.safe_json(values(figure))
-    text = (
-        f"<!DOCTYPE html><meta charset='utf-8'><body style='margin:8px;background:#fff;width:{WIDTH}px'>"
-        f"<div id='a'></div><script>{embed.safe_script(get_plotlyjs())}</script><script>const made={made};"
-        f"Plotly.newPlot('a',made.data,{{...made.layout,width:{WIDTH}}},{{staticPlot:true}});"
-        "document.title='drawn'</script>"
-    )
-    page = browser.new_page(viewport={"width": WIDTH + 16, "height": 600}, device_scale_factor=1.25)
-    page.set_content(text)
-    page.wait_for_function("document.title === 'drawn'")
-    page.wait_for_timeout(500)
-    page.screenshot(path=str(HERE / name), full_page=True)
-    page.close()
-
-
 def main() -> None:
     """Compute what the page shows and take the pictures."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else None
@@ -92,13 +70,9 @@ def main() -> None:
             task = load(EXAMPLES / f"{name}.toml", steer=steer).task()
             journal = None if folder is None else folder / f"{name}-{steer}.jsonl"
             found[name][steer] = robust(task, journal=journal)
-    with sync_playwright() as p:
-        path = shutil.which("chromium") or shutil.which("google-chrome")
-        browser = p.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        take(browser, "lane_change_drive.png", drives(optimise(load(EXAMPLES / "avoiding.toml").task())))
-        take(browser, "lane_change_table.png", table(found["avoiding"]["angle"]))
-        take(browser, "lane_change_excitation.png", excitations(found))
-        browser.close()
+    screenshot([drives(optimise(load(EXAMPLES / "avoiding.toml").task()))], HERE / "lane_change_drive.png")
+    screenshot([table(found["avoiding"]["angle"])], HERE / "lane_change_table.png")
+    screenshot([excitations(found)], HERE / "lane_change_excitation.png")
 
 
 if __name__ == "__main__":

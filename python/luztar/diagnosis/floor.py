@@ -128,6 +128,11 @@ def saturated(runs: Sequence[Prepared]) -> list[np.ndarray]:
 
 def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
     """Estimate the noise floor from runs alone, whatever model is to be compared."""
+    repeated = repeats(runs)
+    if repeated is not None:
+        noise, error = repeated.rms, SURE * repeated.error
+        method = f"repeats in the same state, over {100.0 * repeated.covered:.0f} % of the moving record"
+        return _with_reversals(runs, noise, max(noise - error, 0.0), noise + error, unit, method)
     made = saturated(runs)
     grams, owners, counts = [], [], []
     for r, m in zip(runs, made, strict=True):
@@ -162,11 +167,6 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
         trained = loss(blocks.gram[seen], fitted) / blocks.samples[seen]
         ratio = float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300)))
         unseen = inside * min(max(ratio, 1.0), LARGEST_RATIO**2)
-    repeated = repeats(runs)
-    if repeated is not None:
-        noise, error = repeated.rms, SURE * repeated.error
-        method = f"repeats in the same state, over {100.0 * repeated.covered:.0f} % of the moving record"
-        return _with_reversals(runs, noise, max(noise - error, 0.0), noise + error, unit, method)
     moving = np.sqrt((inside + unseen) / 2.0)
     return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit, SATURATED)
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..model import Model
 from .equations import columns
 from .floor import friction_level, saturated
-from .prepare import Prepared
+from .prepare import Prepared, stroke_of_samples, stroke_offsets
 from .terms import start_terms
 
 # A difference counts from so many standard errors on, clustered by stroke: six strokes of a run give a t-distribution
@@ -98,21 +98,16 @@ def _without_own_delays(runs: tuple[Prepared, ...], model: Model) -> tuple[Prepa
 
 
 def _earlier(effort: np.ndarray, samples: float) -> np.ndarray:
-    """Read an effort later by a number of samples; it is smooth, for it has been through the low pass."""
-    place = np.arange(effort.size) + samples
-    return np.interp(place, np.arange(effort.size), effort)
+    """Read an effort later by a number of samples: 8 of them to a period of the band, a line would be too coarse."""
+    from scipy.interpolate import CubicSpline
+
+    last = effort.size - 1
+    return CubicSpline(np.arange(effort.size), effort)(np.clip(np.arange(effort.size) + samples, 0.0, last))
 
 
 def _owners(runs: Sequence[Prepared], keep: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return the number of the stroke of every kept sample, counted over all runs; -1 before the first."""
-    out, before = [], 0
-    for r, k in zip(runs, keep, strict=True):
-        owner = np.full(r.motion.size, -1)
-        for i, s in enumerate(r.strokes):
-            owner[s.first : s.last] = before + i
-        before += len(r.strokes)
-        out.append(owner[k])
-    return out
+    """Return the stroke of every kept sample, counted over all runs."""
+    return [stroke_of_samples(r, o)[k] for (r, o), k in zip(stroke_offsets(runs), keep, strict=True)]
 
 
 def _own(

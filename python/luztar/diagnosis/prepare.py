@@ -236,3 +236,20 @@ def _zone(speed: np.ndarray, rest_speed: float | None, width: float) -> np.ndarr
     for offset in range(-reach, reach + 1):
         zone[np.clip(slow + offset, 0, speed.size - 1)] = True
     return zone
+
+
+def stroke_offsets(runs: Sequence[Prepared]) -> list[tuple[Prepared, int]]:
+    """Return every run with the number of its first stroke, strokes counted over all runs."""
+    found, offset = [], 0
+    for r in runs:
+        found.append((r, offset))
+        offset += len(r.strokes)
+    return found
+
+
+def stroke_of_samples(r: Prepared, offset: int) -> np.ndarray:
+    """Return the number of the stroke of every kept sample of a run; -1 before its first."""
+    owner = np.full(r.motion.size, -1)
+    for i, s in enumerate(r.strokes):
+        owner[s.first : s.last] = offset + i
+    return owner

@@ -19,7 +19,7 @@ from .chance import one_sided, p_values, signs, studentised, studentised_pairs
 from .equations import Weights
 from .floor import hats, travel_since_reversal
 from .lines import line_frequencies_hz, line_scores
-from .prepare import Prepared
+from .prepare import Prepared, stroke_of_samples, stroke_offsets
 
 # Cells of the tests for lack of fit. A step or bump in the angle is a tenth of a usual range wide.
 POSITION_CELLS = 12
@@ -203,8 +203,8 @@ def _scores(
         if not chosen:
             continue
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
-        offsets = _offsets(runs)
-        every = [_owner(r, offset) for r, offset in offsets]
+        offsets = stroke_offsets(runs)
+        every = [stroke_of_samples(r, offset) for r, offset in offsets]
         tables = [
             np.column_stack([_own_starts(r, m, o, n)[k], m[k]])
             for (r, n), m, o, k in zip(offsets, model_columns, every, keep, strict=True)
@@ -299,18 +299,3 @@ def _own_starts(r: Prepared, columns: np.ndarray, owner: np.ndarray, offset: int
 def _scaled(basis: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(basis, axis=0)
     return basis[:, length > 0] / length[length > 0]
-
-
-def _offsets(runs: Sequence[Prepared]) -> list[tuple[Prepared, int]]:
-    found, offset = [], 0
-    for r in runs:
-        found.append((r, offset))
-        offset += len(r.strokes)
-    return found
-
-
-def _owner(r: Prepared, offset: int) -> np.ndarray:
-    owner = np.full(r.motion.size, -1)
-    for i, s in enumerate(r.strokes):
-        owner[s.first : s.last] = offset + i
-    return owner

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
+from .._stream import Mappings
 from ..model import Model, card
 from .grids import is_continuous, points
 from .prepare import Prepared
 
 
 @dataclass(frozen=True)
-class Terms:
+class Terms(Mappings):
     """Effects in order, with the values of their inner parameters.
 
     Attributes
@@ -30,9 +30,6 @@ class Terms:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inner", MappingProxyType(dict(self.inner)))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (Terms, (self.effects, dict(self.inner)))
 
     def pairs(self) -> list[tuple[str, list[float]]]:
         """Return the terms as the core takes them."""

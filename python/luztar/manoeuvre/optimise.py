@@ -239,7 +239,7 @@ def optimise(
         told=told,
     )
     best = signal(task, box.values(found.point[np.newaxis])[0])
-    if least.values is not None and least.criterion < criterion_of(best):
+    if least.values is not None and least.criterion < _criterion_of(best):
         best = signal(task, least.values)
     return Optimum(
         task=task,
@@ -270,7 +270,7 @@ class _Least:
             self.values = values[at].copy()
 
 
-def criterion_of(found: Signal) -> float:
+def _criterion_of(found: Signal) -> float:
     """Return J_w of a signal, infinite where a limit is broken."""
     value = found.scores["criterion"]
     return np.inf if value is None else float(value)

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
+from .._stream import Mappings
 from ..errors import ModelError
 from .cards import card, own_cards
 from .steering_words import SHORT_KEYS
@@ -61,7 +62,7 @@ class Comparison:
 
 
 @dataclass(frozen=True)
-class Model:
+class Model(Mappings):
     """A structure with effects.
 
     Attributes
@@ -123,13 +124,6 @@ class Model:
             raise ModelError(f"the band is {band} Hz", "comparison.band_hz", "Give a frequency above 0.")
         if decimate is not None and decimate < 1:
             raise ModelError(f"decimate is {decimate}", "comparison.decimate", "Give a whole number from 1.")
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # A read-only view of a dict cannot be pickled.
-        return (
-            Model,
-            (self.structure_name, self.effects, dict(self.known), dict(self.start), self.comparison, self.free),
-        )
 
     def _check(self, where: str, key: str, value: float) -> None:
         if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):

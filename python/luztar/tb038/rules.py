@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from .._stream import Mappings
 from ..errors import ParameterError
 
 SCHEMA = 1
@@ -26,7 +27,7 @@ class CheckItem(NamedTuple):
 
 
 @dataclass(frozen=True)
-class RuleSet:
+class RuleSet(Mappings):
     """One bulletin's numbers.
 
     Attributes
@@ -80,11 +81,6 @@ class RuleSet:
     def section(self, subject: str) -> str:
         """Return where ``subject`` stands, with the rule set's short name where the rule set does not say."""
         return self.sections.get(subject, self.name)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # A mappingproxy does not pickle; a plain dict does, and the constructor takes either.
-        fields = {key: getattr(self, key) for key in self.__dataclass_fields__}
-        return (_restore, ({**fields, "sections": dict(self.sections)},))
 
 
 class Judgement(NamedTuple):
@@ -253,10 +249,6 @@ def _refuse_unknown(data: Mapping[str, Any], where: str) -> None:
         for key in value if name in tables else ():
             if key not in tables[name]:
                 raise ParameterError(f"unknown key {key!r} in [{name}]", where, "Remove it or spell it as shipped.")
-
-
-def _restore(fields: dict[str, Any]) -> RuleSet:
-    return RuleSet(**{**fields, "sections": MappingProxyType(fields["sections"])})
 
 
 @cache

@@ -117,7 +117,7 @@ def step_steer(
         vary=vary,
     )
     since = run.time_s - START_S - 0.5 * rise
-    steady = _comes_to_rest(run.yaw_rate_rad_s) & np.atleast_1d(run.x_m[..., -1] != run.x_m[..., -2])
+    steady = _becomes_steady(run.yaw_rate_rad_s) & np.atleast_1d(run.x_m[..., -1] != run.x_m[..., -2])
     if not steady.all():
         which = f" of car {int(np.argmin(steady))}" if steady.size > 1 else ""
         raise ParameterError(
@@ -145,7 +145,7 @@ def step_steer(
     )
 
 
-def _comes_to_rest(response: np.ndarray) -> np.ndarray:
+def _becomes_steady(response: np.ndarray) -> np.ndarray:
     """Whether responses (n,) or (cars, n) change by less than :data:`STEADY` over their last tenth."""
     rows = np.atleast_2d(response)
     tail = rows[:, -max(2, rows.shape[1] // 10) :]

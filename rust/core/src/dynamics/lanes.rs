@@ -20,6 +20,7 @@ use super::number::Pure;
 use super::observe::{Places, Samples};
 use super::one_mass::OneMass;
 use super::watched::Watched;
+use super::width::{Width, run};
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,19 +38,6 @@ pub struct Start {
     pub phi: f64,
     /// Its speed, rad/s; 0 is at rest.
     pub speed: f64,
-}
-
-/// The instruction set to use: the widest there is, or one by name (for tests; the bits are the same).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Width {
-    /// The widest that this processor has.
-    Widest,
-    /// Two lanes at a time at most: what every processor of this kind has.
-    Baseline,
-    /// Four lanes at a time, if the processor can.
-    Avx2,
-    /// Eight lanes at a time, if the processor can.
-    Avx512,
 }
 
 /// Lanes of a block where there are many: their states stay in the first-level cache.
@@ -278,26 +266,6 @@ pub(super) struct Part<'a> {
 
 /// One block of `N` lanes along one drive.
 struct Task<'a, const N: usize>(Part<'a>, &'a Drive);
-
-/// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
-fn run(task: impl WithSimd<Output = ()>, width: Width) {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        use pulp::Simd;
-        if matches!(width, Width::Widest | Width::Avx512)
-            && let Some(simd) = pulp::x86::V4::try_new()
-        {
-            return Simd::vectorize(simd, task);
-        }
-        if width != Width::Baseline
-            && let Some(simd) = pulp::x86::V3::try_new()
-        {
-            return Simd::vectorize(simd, task);
-        }
-    }
-    let _ = width;
-    task.with_simd(pulp::Scalar::new());
-}
 
 impl<const N: usize> WithSimd for Task<'_, N> {
     type Output = ();

@@ -6,7 +6,7 @@
 
 use pulp::WithSimd;
 
-use crate::dynamics::{Pure, Width};
+use crate::dynamics::{self, Pure};
 
 use super::body::Body;
 use super::columns::{Columns, Views};
@@ -34,26 +34,10 @@ pub(super) struct Part<'a> {
 
 struct Task<'a>(Part<'a>);
 
-/// Runs a block with the instruction set asked for; one that the processor lacks gives way to the next below.
+/// Runs a block with the instruction set that the fleet asks for.
 pub(super) fn run(part: Part<'_>) {
     let width = part.fleet.width;
-    let task = Task(part);
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        use pulp::Simd;
-        if matches!(width, Width::Widest | Width::Avx512)
-            && let Some(simd) = pulp::x86::V4::try_new()
-        {
-            return Simd::vectorize(simd, task);
-        }
-        if width != Width::Baseline
-            && let Some(simd) = pulp::x86::V3::try_new()
-        {
-            return Simd::vectorize(simd, task);
-        }
-    }
-    let _ = width;
-    task.with_simd(pulp::Scalar::new());
+    dynamics::run(Task(part), width);
 }
 
 impl WithSimd for Task<'_> {
