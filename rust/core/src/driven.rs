@@ -12,6 +12,7 @@ mod rests;
 mod staircase;
 mod start;
 mod strokes;
+mod within_step;
 
 pub use columns::{Term, inner_of};
 pub use equations::{Blocks, Rows, solve};

@@ -14,9 +14,8 @@ use crate::effects::{CATALOGUE, Channels, Contact, Effect, Kind, find};
 /// turned within twice its travel, which is at most two steps.
 const STEPS_TO_BE_SURE: f64 = 4.0;
 
-/// A start lies this many times what lies between the first two borders before the first, which is twice the
-/// uncertainty of an onset: 1.4 times for constant acceleration, 3.2 times for the fourth power of time, whose first
-/// twentieth moves nothing.
+/// A start lies this many times what lies between the first two borders before the first: 1.4 times for constant
+/// acceleration, 3.2 times for the fourth power of time, whose first twentieth moves nothing.
 const START_LEAD: f64 = 3.0;
 
 /// One effect of a model with the values of its inner parameters.
@@ -206,7 +205,7 @@ impl Recording {
                     for stroke in self.strokes() {
                         let onset = self.law_sample(stroke.onset);
                         // The onset is the last sample at rest; the way into the first step begins before it.
-                        let lead_s = 2.0 * START_LEAD * stroke.onset_uncertainty_s;
+                        let lead_s = START_LEAD * stroke.first_step_s;
                         let from =
                             onset.saturating_sub((lead_s * self.law_rate_hz).ceil() as usize);
                         let start = self.seen[onset];

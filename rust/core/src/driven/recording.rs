@@ -5,7 +5,7 @@ use super::contact::Slide;
 use super::kinematics::derivative;
 use super::resolution::{Resolution, span};
 use super::rests::{CERTAIN, held, noise};
-use super::staircase::join_steps;
+use super::staircase::{Joined, join_steps};
 use super::strokes::{Phases, Stroke, strokes, turning_points};
 use crate::Error;
 use crate::error::{require_finite, require_positive};
@@ -140,10 +140,12 @@ impl Recording {
         };
         let mut smooth = smoothed(position)?;
         let mut resolution = Resolution::of(position, &smooth);
+        let mut known = Vec::new();
         let seen = if resolution.quantised {
-            let joined = join_steps(position);
-            smooth = smoothed(&joined)?;
-            joined
+            let Joined { position, starts } = join_steps(position);
+            known = starts;
+            smooth = smoothed(&position)?;
+            position
         } else {
             // Noise faster than any start of a motion is taken off first.
             let quick_hz = TREMBLE_OVER_BAND * band.upper_hz;
@@ -169,7 +171,7 @@ impl Recording {
             }
         };
         let turns = turning_points(&smooth, travel.hysteresis, travel.minimum);
-        let strokes = strokes(&turns, &seen, resolution.step, sample_rate_hz);
+        let strokes = strokes(&turns, &seen, &known, resolution.step, sample_rate_hz);
         if let Some(load) = load_n {
             crate::error::require_same_length("load", load, "position", position.len())?;
             require_finite("load", load)?;

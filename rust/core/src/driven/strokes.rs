@@ -1,5 +1,7 @@
 //! Strokes: the motion between two reversals, with the dwell that follows it.
 
+use super::staircase::KnownStart;
+
 /// One stroke of a recording, in samples of the smoothed position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
@@ -9,7 +11,10 @@ pub struct Stroke {
     pub turn: usize,
     /// +1 where the position increases, -1 where it decreases.
     pub direction: f64,
-    /// By how much the instant of the motion's start is uncertain: the time the sensor needs for half a step then.
+    /// The time that the sensor's first whole step after the onset takes.
+    pub first_step_s: f64,
+    /// By how much the instant of the motion's start is uncertain: its standard error where the crossings of an encoder
+    /// tell it, else half of the first step's time.
     pub onset_uncertainty_s: f64,
 }
 
@@ -49,7 +54,7 @@ impl Phases {
             let end = strokes.get(k + 1).map_or(n, |next| next.onset);
             let inside = stroke.onset..end;
             // On its way into the rest and out of it the position was within half a step of it as well.
-            let rest_s = rest as f64 / sample_rate_hz - 2.0 * stroke.onset_uncertainty_s;
+            let rest_s = rest as f64 / sample_rate_hz - stroke.first_step_s;
             phases.rest_s[inside.clone()].fill(rest_s.max(0.0));
             phases.direction[inside.clone()].fill(stroke.direction);
             for (travelled, x) in phases.travelled[inside.clone()]
@@ -147,19 +152,34 @@ pub fn turning_points(smooth: &[f64], hysteresis: f64, minimum_travel: f64) -> V
 
 /// Finds the strokes between turning points.
 ///
-/// `seen` is the position as the contact follows it, `step` its resolution: onsets are looked for on it.
-pub fn strokes(turns: &[Turn], seen: &[f64], step: f64, sample_rate_hz: f64) -> Vec<Stroke> {
+/// `seen` is the position as the contact follows it, `step` its resolution: onsets are looked for on it. `known` are the
+/// starts whose instants are known better than that.
+pub fn strokes(
+    turns: &[Turn],
+    seen: &[f64],
+    known: &[KnownStart],
+    step: f64,
+    sample_rate_hz: f64,
+) -> Vec<Stroke> {
     turns
         .windows(2)
         .map(|pair| {
             let direction = (pair[1].position - pair[0].position).signum();
             let (from, to) = (pair[0].sample, pair[1].sample);
-            let (onset, uncertain) = onset(&seen[from..=to], direction, step);
+            let (onset, first_step) = onset(&seen[from..=to], direction, step);
+            let onset = from + onset;
+            // Within half a step of its rest the motion has crossed the first border, or is about to.
+            let uncertain = known
+                .iter()
+                .filter(|k| (k.crossing - onset as f64).abs() <= first_step as f64)
+                .map(|k| k.error)
+                .fold(0.5 * first_step as f64, f64::min);
             Stroke {
-                onset: from + onset,
+                onset,
                 turn: to,
                 direction,
-                onset_uncertainty_s: uncertain as f64 / sample_rate_hz / 2.0,
+                first_step_s: first_step as f64 / sample_rate_hz,
+                onset_uncertainty_s: uncertain / sample_rate_hz,
             }
         })
         .collect()
@@ -191,7 +211,7 @@ mod tests {
     use super::{Stroke, turning_points};
 
     fn strokes(x: &[f64]) -> Vec<Stroke> {
-        super::strokes(&turning_points(x, 1.0, 5.0), x, 0.1, 100.0)
+        super::strokes(&turning_points(x, 1.0, 5.0), x, &[], 0.1, 100.0)
     }
 
     #[test]
