@@ -42,7 +42,6 @@ RUNS, RATE_HZ, DURATION_S = 3, 1000.0, 40.0
 LENGTHS_S, RATES_HZ = (20.0, 40.0, 80.0, 160.0), (500.0, 1000.0, 2000.0)
 AIM_STUDY_S, AIM_REFIT_S = 2.0, 0.15
 MODEL = luztar.Model.rig()
-UNIT = MODEL.structure.effort_unit
 
 Calls = dict[str, Callable[[], object]]
 
@@ -100,7 +99,7 @@ def parts(runs: list[luztar.Run]) -> None:
 
     def floored() -> None:
         prepared()
-        at["floor"] = noise_floor(at["runs"], UNIT)
+        at["floor"] = noise_floor(at["runs"], MODEL)
 
     def fitted() -> None:
         floored()
@@ -114,7 +113,7 @@ def parts(runs: list[luztar.Run]) -> None:
 
     calls: Calls = {
         "prepare": prepared,
-        "noise floor": lambda: noise_floor(at["runs"], UNIT),
+        "noise floor": lambda: noise_floor(at["runs"], MODEL),
         "fit": lambda: fit_prepared(MODEL, at["runs"], (), at["floor"]),
         "one look": lambda: luztar.diagnose(at["fit"]),
         "one effect added and refitted": lambda: at["loop"].fit(at["more"]),

@@ -434,9 +434,13 @@ class Recording:
         given: Sequence[tuple[int, float]],
         effort: NDArray[np.float64],
         strokes: Sequence[_Rows],
+        whitening: tuple[float, float] | None = None,
     ) -> NDArray[np.float64]: ...
 
 def normal_equations(columns: NDArray[np.float64], strokes: Sequence[_Rows]) -> NDArray[np.float64]: ...
+def whitened(
+    columns: NDArray[np.float64], step_s: float, zero_hz: float, pole_hz: float
+) -> NDArray[np.float64]: ...
 def solve_block(block: NDArray[np.float64], bound: float) -> NDArray[np.float64]: ...
 def held_out(
     products: NDArray[np.float64], fold_of: Sequence[int], folds: int, bound: float

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
+from .colour import WHITE, Colour
 from .prepare import Prepared
 from .terms import Terms
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Weights:
-    """What the shift of a reversal is weighed against.
+    """What the residual is weighed with, and what the shift of a reversal is weighed against.
 
     Attributes
     ----------
@@ -37,19 +38,22 @@ class Weights:
     level : float
         Friction level whose reversal is shifted.
     band_hz : float
+    colour : Colour
+        Of the noise; the normal equations are those of whitened columns.
     """
 
     noise_rms: float
     level: float
     band_hz: float
+    colour: Colour = WHITE
 
     def ridge(self, step_s: float, uncertainty_s: float) -> float:
         """Return the penalty of a shift's column.
 
         The noise is spread over the band, not over all frequencies: along one smooth column its power is that of
-        white noise of the same density, ``rms^2 / (2 band step)``.
+        white noise of the same density, ``rms^2 / (2 band step)``. Whitening leaves the flat part of its spectrum.
         """
-        density = self.noise_rms**2 / (2.0 * self.band_hz * step_s)
+        density = self.noise_rms**2 * self.colour.flat_share(self.band_hz) / (2.0 * self.band_hz * step_s)
         return density / max(self.level * uncertainty_s, 1e-12) ** 2
 
 
@@ -146,16 +150,19 @@ def columns(runs: Sequence[Prepared], terms: Terms, given: Mapping[int, float] |
 def fitted_blocks(runs: Sequence[Prepared], terms: Terms, given: Mapping[int, float], weights: Weights) -> Blocks:
     """Form the normal equations of a model; its columns stay in the core."""
     pairs, places = terms.pairs(), list(given.items())
-    grams = [r.recording.normal_equations(pairs, places, r.effort, _rows(r, weights)) for r in runs]
+    whitening = weights.colour.whitening
+    grams = [r.recording.normal_equations(pairs, places, r.effort, _rows(r, weights), whitening) for r in runs]
     return _joined(runs, grams, weights)
 
 
-def blocks(runs: Sequence[Prepared], made: Columns, weights: Weights) -> Blocks:
-    """Form the normal equations of columns that are at hand."""
-    grams = [
-        _core.normal_equations(np.ascontiguousarray(m.T), _rows(r, weights))
-        for r, m in zip(runs, made.matrix, strict=True)
-    ]
+def blocks(runs: Sequence[Prepared], made: Columns, weights: Weights, moving: bool = False) -> Blocks:
+    """Form the normal equations of columns that are at hand; ``moving`` leaves the reversal zones out."""
+    grams = []
+    for r, m in zip(runs, made.matrix, strict=True):
+        table = weights.colour.whitened(m, r.step_s)
+        if moving:
+            table = table * ~r.zone[:, None]
+        grams.append(_core.normal_equations(np.ascontiguousarray(table.T), _rows(r, weights)))
     return _joined(runs, grams, weights)
 
 

@@ -165,10 +165,9 @@ def fit_prepared(
     located : bool
         Whether the start values in the model come from a search of these runs, which need not be repeated.
     """
-    unit = model.structure.effort_unit
-    floor = floor or noise_floor(runs, unit)
+    floor = floor or noise_floor(runs, model)
     level = max(friction_level(runs), 1e-12)
-    problem = Problem(runs, model, Weights(floor.moving_rms, level, model.band_hz), fixed_coefficients(model))
+    problem = Problem(runs, model, Weights(floor.moving_rms, level, model.band_hz, floor.colour), fixed_coefficients(model))
     first = state(problem, start_terms(model, runs))
     search = Search(Folds.of(first.blocks))
     search.visit(first)

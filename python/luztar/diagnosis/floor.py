@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from ..model import Model
+from .colour import WHITE, Colour, colour_of
 from .equations import Blocks, loss
 from .folds import Folds
-from .prepare import Prepared
+from .prepare import Prepared, decimates_alone
 from .repeats import repeats
 
 # Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
@@ -52,6 +54,8 @@ class NoiseFloor:
         Away from the reversal zones, and inside them.
     unit : str
     method : str
+    colour : Colour
+        The shape of its spectrum away from the reversal zones.
     """
 
     rms: float
@@ -61,6 +65,7 @@ class NoiseFloor:
     zone_rms: float
     unit: str
     method: str
+    colour: Colour = WHITE
 
     def to_dict(self) -> dict[str, Any]:
         """Return the floor as the JSON interface prints it."""
@@ -126,39 +131,55 @@ def saturated(runs: Sequence[Prepared]) -> list[np.ndarray]:
     return made
 
 
-def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
-    """Estimate the noise floor from runs alone, whatever model is to be compared."""
-    repeated = repeats(runs)
-    if repeated is not None:
-        noise, error = repeated.rms, SURE * repeated.error
-        method = f"repeats in the same state, over {100.0 * repeated.covered:.0f} % of the moving record"
-        return _with_reversals(runs, noise, max(noise - error, 0.0), noise + error, unit, method)
-    made = saturated(runs)
-    grams, owners, counts = [], [], []
-    for r, m in zip(runs, made, strict=True):
-        rows, tables, start = [], [], 0
-        for s in r.strokes:
-            part = slice(s.first, s.last)
-            keep = r.usable[part] & ~r.zone[part]
-            tables.append(np.column_stack([m[part][keep], r.effort[part][keep]]))
-            # An infinite ridge: away from the zones no start is uncertain.
-            rows.append((start, start + int(keep.sum()), np.inf))
-            start = rows[-1][1]
-            owners.append(s.run)
-            counts.append(int(keep.sum()))
-        grams.append(_core.normal_equations(np.ascontiguousarray(np.concatenate(tables).T), rows))
-    gram = np.concatenate(grams)
-    # A ridge keeps hats that no sample touches from making the equations singular; spread over the strokes, it is in
-    # every sum that is solved.
-    ridge = RIDGE * np.eye(gram.shape[1]) / len(gram)
-    ridge[-1, -1] = 0.0
-    blocks = Blocks(gram + ridge, np.inf, np.array(owners), np.array(counts))
-    samples = max(int(blocks.samples.sum()), 1)
-    fitted = blocks.solve()
-    inside = float(loss(blocks.gram, fitted).sum()) / samples
-    folds = Folds.of(blocks)
-    unseen = inside
-    if folds.count > 1:
+@dataclass(frozen=True)
+class _Saturated:
+    """The saturated model fitted away from the reversal zones."""
+
+    made: list[np.ndarray]
+    blocks: Blocks
+    coefficients: np.ndarray
+
+    @classmethod
+    def of(cls, runs: Sequence[Prepared]) -> _Saturated:
+        made = saturated(runs)
+        grams, owners, counts = [], [], []
+        for r, m in zip(runs, made, strict=True):
+            rows, tables, start = [], [], 0
+            for s in r.strokes:
+                part = slice(s.first, s.last)
+                keep = r.usable[part] & ~r.zone[part]
+                tables.append(np.column_stack([m[part][keep], r.effort[part][keep]]))
+                # An infinite ridge: away from the zones no start is uncertain.
+                rows.append((start, start + int(keep.sum()), np.inf))
+                start = rows[-1][1]
+                owners.append(s.run)
+                counts.append(int(keep.sum()))
+            grams.append(_core.normal_equations(np.ascontiguousarray(np.concatenate(tables).T), rows))
+        gram = np.concatenate(grams)
+        # A ridge keeps hats that no sample touches from making the equations singular; spread over the strokes, it is
+        # in every sum that is solved.
+        ridge = RIDGE * np.eye(gram.shape[1]) / len(gram)
+        ridge[-1, -1] = 0.0
+        blocks = Blocks(gram + ridge, np.inf, np.array(owners), np.array(counts))
+        return cls(made, blocks, blocks.solve())
+
+    def pieces(self, runs: Sequence[Prepared]) -> list[tuple[np.ndarray, float]]:
+        """Return what it leaves, in pieces without an interruption."""
+        found = []
+        for r, m in zip(runs, self.made, strict=True):
+            keep = r.usable & ~r.zone
+            left = r.effort - m[:, : self.coefficients.size] @ self.coefficients
+            edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(int)))
+            found += [(left[a:b], r.step_s) for a, b in edges.reshape(-1, 2)]
+        return found
+
+    def errors(self) -> tuple[float, float]:
+        """Return the mean squares that it leaves where it was fitted and on strokes that it has not seen."""
+        blocks, fitted = self.blocks, self.coefficients
+        inside = float(loss(blocks.gram, fitted).sum()) / max(int(blocks.samples.sum()), 1)
+        folds = Folds.of(blocks)
+        if folds.count < 2:
+            return inside, inside
         losses, _ = blocks.held_out(folds)
         # A hat that only one run visits has no prediction there: such strokes say nothing about the noise. The median
         # over strokes, scaled to a mean by the training's own ratio, is deaf to them.
@@ -166,13 +187,27 @@ def noise_floor(runs: Sequence[Prepared], unit: str) -> NoiseFloor:
         seen = blocks.samples > 0
         trained = loss(blocks.gram[seen], fitted) / blocks.samples[seen]
         ratio = float(np.median(per_stroke[seen] / np.maximum(trained, 1e-300)))
-        unseen = inside * min(max(ratio, 1.0), LARGEST_RATIO**2)
-    moving = np.sqrt((inside + unseen) / 2.0)
-    return _with_reversals(runs, float(moving), float(np.sqrt(inside)), float(np.sqrt(unseen)), unit, SATURATED)
+        return inside, inside * min(max(ratio, 1.0), LARGEST_RATIO**2)
+
+
+def noise_floor(runs: Sequence[Prepared], model: Model) -> NoiseFloor:
+    """Estimate the noise floor from runs alone; of the model only the structure and the band are looked at."""
+    fitted = _Saturated.of(runs)
+    low_passed = not (decimates_alone(model) or model.comparison.filter_already_applied)
+    colour = colour_of(fitted.pieces(runs), model.band_hz, low_passed)
+    unit = model.structure.effort_unit
+    repeated = repeats(runs)
+    if repeated is not None:
+        noise, error = repeated.rms, SURE * repeated.error
+        method = f"repeats in the same state, over {100.0 * repeated.covered:.0f} % of the moving record"
+        return _with_reversals(runs, noise, (max(noise - error, 0.0), noise + error), unit, method, colour)
+    inside, unseen = fitted.errors()
+    moving = float(np.sqrt((inside + unseen) / 2.0))
+    return _with_reversals(runs, moving, (float(np.sqrt(inside)), float(np.sqrt(unseen))), unit, SATURATED, colour)
 
 
 def _with_reversals(
-    runs: Sequence[Prepared], moving: float, low: float, high: float, unit: str, method: str
+    runs: Sequence[Prepared], moving: float, limits: tuple[float, float], unit: str, method: str, colour: Colour
 ) -> NoiseFloor:
     """Add what the uncertain starts of the strokes leave in the reversal zones."""
     level = friction_level(runs)
@@ -186,7 +221,7 @@ def _with_reversals(
             samples += int(keep.sum())
             zone_samples += int((keep & r.zone[part]).sum())
     start = squares / max(samples, 1)
-    rms, low_all, high_all = (float(np.sqrt(v**2 + start)) for v in (moving, low, high))
+    rms, low_all, high_all = (float(np.sqrt(v**2 + start)) for v in (moving, *limits))
     return NoiseFloor(
         rms,
         low_all,
@@ -195,6 +230,7 @@ def _with_reversals(
         float(np.sqrt(moving**2 + squares / max(zone_samples, 1))),
         unit,
         f"{method}; in the reversal zones plus the uncertain instant of the start",
+        colour,
     )
 
 

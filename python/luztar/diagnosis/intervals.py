@@ -140,8 +140,7 @@ def _pull_of_reversals(problem: Problem, made: Columns, full: np.ndarray, covari
     How a motion starts is extrapolated from what the sensor shows, the same way for every stroke: what that gets wrong
     does not average out over strokes, and leaving one out does not show it.
     """
-    moving = [m * ~r.zone[:, None] for r, m in zip(problem.runs, made.matrix, strict=True)]
-    parts = blocks(problem.runs, Columns(made.terms, tuple(moving)), problem.weights)
+    parts = blocks(problem.runs, made, problem.weights, moving=True)
     without = parts.solve()
     spread, _ = jackknife(parts, without)
     told = np.diag(spread) <= TOLD_IN_MOTION**2 * np.diag(covariance)

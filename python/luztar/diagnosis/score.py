@@ -205,8 +205,9 @@ def _scores(
         keep = [r.usable & (r.zone if inside else ~r.zone) for r in runs]
         offsets = stroke_offsets(runs)
         every = [stroke_of_samples(r, offset) for r, offset in offsets]
+        colour = weights.colour
         tables = [
-            np.column_stack([_own_starts(r, m, o, n)[k], m[k]])
+            colour.whitened(np.column_stack([_own_starts(r, m, o, n), m]), r.step_s)[k]
             for (r, n), m, o, k in zip(offsets, model_columns, every, keep, strict=True)
         ]
         owners = [o[k] for o, k in zip(every, keep, strict=True)]
@@ -224,7 +225,8 @@ def _scores(
         count = sum(len(r.strokes) for r in runs)
         belongs = (owner == np.arange(count)[:, None]).astype(float)
         for i in chosen:
-            z = np.concatenate([w(c[k]) for w, c, k in zip(whiten, features[i].columns, keep, strict=True)])
+            added = [colour.whitened(c, r.step_s)[k] for r, c, k in zip(runs, features[i].columns, keep, strict=True)]
+            z = np.concatenate([w(c) for w, c in zip(whiten, added, strict=True)])
             z = z - q @ (q.T @ z)
             scores = belongs @ (z * residual[:, None])
             # A column that the model explains already has nothing left but rounding.

@@ -147,6 +147,6 @@ def study(
     prepared = levelled(prepare_measured(not_held_out(runs, held_out), model), model)
     unseen = prepare_measured(held_out, model) if len(held_out) else ()
     require_trustworthy(prepared)
-    floor = noise_floor(prepared, model.structure.effort_unit)
+    floor = noise_floor(prepared, model)
     steps, looks = climb(Loop(model, prepared, unseen, floor, progress), max_effects)
     return Study(tuple(steps), tuple(looks), floor, runs, held_out)

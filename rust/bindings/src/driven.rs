@@ -1,6 +1,6 @@
 //! `luztar._core.Recording`: a run prepared for driven fits.
 
-use luztar::driven::{Band, Blocks, Recording as Core, Rows, Term, Travel, solve};
+use luztar::driven::{Band, Blocks, Recording as Core, Rows, Term, Travel, Whitening, solve};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3, PyUntypedArrayMethods,
@@ -181,7 +181,8 @@ impl Recording {
         columns.concat().into_pyarray(py).reshape(shape)
     }
 
-    /// Shape (strokes, size, size). `strokes`: (first, last, ridge) in kept samples.
+    /// Shape (strokes, size, size). `strokes`: (first, last, ridge) in kept samples. `whitening`: its zero and pole, Hz.
+    #[pyo3(signature = (model, given, effort, strokes, whitening=None))]
     fn normal_equations<'py>(
         &self,
         py: Python<'py>,
@@ -189,11 +190,14 @@ impl Recording {
         given: Vec<(usize, f64)>,
         effort: PyReadonlyArray1<'_, f64>,
         strokes: Vec<(usize, usize, f64)>,
+        whitening: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let (model, rows) = (terms(model), rows(strokes));
         let y = effort.as_slice()?;
+        let filter = whitening
+            .map(|(zero_hz, pole_hz)| Whitening::new(zero_hz, pole_hz, self.core.step_s()));
         let made = py
-            .detach(|| self.core.normal_equations(&model, &given, y, &rows))
+            .detach(|| self.core.normal_equations(&model, &given, y, &rows, filter))
             .map_err(CoreError)?;
         array(py, made)
     }
@@ -228,6 +232,26 @@ pub fn normal_equations<'py>(
     let length = columns.shape()[1].max(1);
     let all: Vec<&[f64]> = columns.as_slice()?.chunks(length).collect();
     array(py, Blocks::of(&all, &rows(strokes)))
+}
+
+/// The columns through a whitening filter; `columns` has the shape (size, kept samples).
+#[pyfunction]
+pub fn whitened<'py>(
+    py: Python<'py>,
+    columns: PyReadonlyArray2<'_, f64>,
+    step_s: f64,
+    zero_hz: f64,
+    pole_hz: f64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (rows, length) = (columns.shape()[0], columns.shape()[1]);
+    let mut out = columns.as_slice()?.to_vec();
+    let filter = Whitening::new(zero_hz, pole_hz, step_s);
+    py.detach(|| {
+        for series in out.chunks_mut(length.max(1)) {
+            filter.apply(series);
+        }
+    });
+    out.into_pyarray(py).reshape([rows, length])
 }
 
 /// The least-squares coefficients of one summed block, shape (size, size).

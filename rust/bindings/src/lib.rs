@@ -27,7 +27,7 @@ mod _core {
     #[pymodule_export]
     use crate::batches::{check_lanes, lane_columns, run_lanes};
     #[pymodule_export]
-    use crate::driven::{Recording, held_out, normal_equations, solve_block};
+    use crate::driven::{Recording, held_out, normal_equations, solve_block, whitened};
     #[pymodule_export]
     use crate::dynamics::{
         simulate_steering, steering_highest_rad_s, steering_parameters, trace_steering,

@@ -12,9 +12,11 @@ mod rests;
 mod staircase;
 mod start;
 mod strokes;
+mod whitening;
 mod within_step;
 
 pub use columns::{Term, inner_of};
 pub use equations::{Blocks, Rows, solve};
 pub use recording::{Band, Recording, Travel};
 pub use strokes::Stroke;
+pub use whitening::Whitening;

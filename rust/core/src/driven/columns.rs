@@ -7,6 +7,7 @@ use super::cache::Key;
 use super::contact::{Slide, slide};
 use super::equations::{Blocks, Rows};
 use super::recording::Recording;
+use super::whitening::Whitening;
 use crate::Error;
 use crate::effects::{CATALOGUE, Channels, Contact, Effect, Kind, find};
 
@@ -105,7 +106,7 @@ impl Recording {
     /// The normal equations of a model, one block per stroke.
     ///
     /// `given` are coefficients known beforehand, by the place of their column: these columns are not among those of
-    /// the blocks, their part is taken off the measurement.
+    /// the blocks, their part is taken off the measurement. `whitening` makes the noise white in both.
     ///
     /// # Errors
     /// As [`Recording::columns`]; [`Error::Length`] for a measurement that is not as long as the comparison.
@@ -115,15 +116,21 @@ impl Recording {
         given: &[(usize, f64)],
         effort: &[f64],
         strokes: &[Rows],
+        whitening: Option<Whitening>,
     ) -> Result<Blocks, Error> {
         let every: Vec<usize> = (0..terms.len()).collect();
-        let columns = self.columns(terms, &every)?;
-        let shift = self.start_shift(terms)?;
+        let mut columns = self.columns(terms, &every)?;
+        let mut shift = self.start_shift(terms)?;
         crate::error::require_same_length("effort", effort, "comparison", shift.len())?;
         let mut left = effort.to_vec();
         for (place, coefficient) in given {
             for (y, c) in left.iter_mut().zip(&columns[*place]) {
                 *y -= coefficient * c;
+            }
+        }
+        if let Some(whitening) = whitening {
+            for series in columns.iter_mut().chain([&mut shift, &mut left]) {
+                whitening.apply(series);
             }
         }
         let free = columns

@@ -249,6 +249,12 @@ impl Recording {
         self.decimate
     }
 
+    /// Seconds between the samples that the comparison keeps.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        self.every() as f64 / self.law_rate_hz
+    }
+
     /// Every how many samples of the laws the comparison keeps one.
     pub(super) fn every(&self) -> usize {
         self.decimate / self.stride
