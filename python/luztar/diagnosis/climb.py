@@ -19,7 +19,7 @@ from .fit import Fit, fit_prepared
 from .floor import NoiseFloor
 from .prepare import Prepared
 from .step import Step
-from .verdict import ABOVE_FLOOR, admissible, shown_rms
+from .verdict import ABOVE_FLOOR, admissible, shows
 
 MAX_EFFECTS = 4
 # So many of the best candidates are given a partner where none stands out alone.
@@ -48,7 +48,7 @@ class Loop:
 
     def explained(self, fitted: Fit) -> float:
         """Return the held-out sum of squares that the effects added so far have taken off."""
-        return max(0.0, self.first.search.held_out_loss - fitted.search.held_out_loss)
+        return max(0.0, self.first.whitened.search.held_out_loss - fitted.whitened.search.held_out_loss)
 
     def look(self, fitted: Fit, what: str) -> Diagnosis:
         """Look at a fitted model, telling ``what`` for."""
@@ -122,9 +122,9 @@ def _two_at_once(loop: Loop, fitted: Fit, look: Diagnosis) -> _Pair | None:
         if len(second.named) != 1:
             continue
         two = loop.fit(_with(one, second, second.named[0]))
-        share, errors = gain(fitted.search, two.search)
+        share, errors = gain(fitted.whitened.search, two.whitened.search)
         worth = share >= PRACTICAL_GAIN and errors >= SET_ERRORS
-        if worth and (best is None or two.search.held_out_loss < best.fit.search.held_out_loss):
+        if worth and (best is None or _loss(two) < _loss(best.fit)):
             best = _Pair((first.name, second.named[0]), two)
     return best
 
@@ -136,10 +136,11 @@ def _without_needless(loop: Loop, fitted: Fit, added: list[str]) -> tuple[Fit, l
     """
     while len(added) > 1:
         trials = [(name, loop.fit(fitted.model - name)) for name in added if not needed(fitted.model, name)]
-        for name, without in sorted(trials, key=lambda t: t[1].search.held_out_loss):
-            share, errors = gain(without.search, fitted.search)
-            worth = beyond_the_law(without.search, fitted.search, loop.explained(without))
-            worth = worth and shown_rms(fitted, fitted.search) < shown_rms(without, without.search)
+        for name, without in sorted(trials, key=lambda t: _loss(t[1])):
+            before, after = without.whitened.search, fitted.whitened.search
+            share, errors = gain(before, after)
+            worth = beyond_the_law(before, after, loop.explained(without))
+            worth = worth and shows(fitted, without.search, fitted.search)
             if share < PRACTICAL_GAIN or errors < SET_ERRORS or not worth:
                 fitted, added = without, [a for a in added if a != name]
                 break
@@ -165,7 +166,7 @@ def _simplest(
                     continue
                 trial = loop.fit(_started(fitted.model - name + other, {}, fitted))
                 trial, left = _without_needless(loop, trial, [other if a == name else a for a in added])
-                behind, error = paired_error(trial.search.losses, fitted.search.losses)
+                behind, error = paired_error(trial.whitened.search.losses, fitted.whitened.search.losses)
                 fewer = len(left) < len(added) and behind <= SET_ERRORS * error
                 if fewer or (len(left) == len(added) and behind < 0.0 and -behind > SET_ERRORS * error):
                     offered = {**offered, other: offered[name]}
@@ -189,7 +190,7 @@ def _each_in_its_place(
         look = loop.look(without, f"in the place of {name}")
         if look.named and look.named[0] != name and name not in look.named:
             better = loop.fit(_with(without, look, look.named[0]))
-            if better.search.held_out_loss < fitted.search.held_out_loss:
+            if _loss(better) < _loss(fitted):
                 fitted, added = better, [look.named[0] if a == name else a for a in added]
                 looks.append(loop.look(fitted, f"look {len(looks) + 1}"))
                 offered[look.named[0]] = look.named
@@ -219,6 +220,10 @@ def _ladder(
         steps.append(Step(name, members, provisional, step_fit, experiment_for(step_fit, members)))
         left.remove(name)
     return steps
+
+
+def _loss(fitted: Fit) -> float:
+    return fitted.whitened.search.held_out_loss
 
 
 def needed(model: Model, name: str) -> bool:

@@ -2,8 +2,8 @@
 
 Noise that wanders is strong where it is slow. Least squares that weigh all frequencies alike then judge by what is
 known worst, and neighbouring strokes are wrong together. The spectrum of what a saturated model leaves is described by
-``level (f^2 + pole^2) / (f^2 + zero^2)``: a wander that falls from ``zero_hz`` on until it drowns at ``pole_hz`` in noise
-that is as strong at every frequency. The inverse is a filter of first order. Measurement, model and candidates go
+``level (f^2 + pole^2) / (f^2 + zero^2)``: a wander that falls from ``zero_hz`` on until it drowns at ``pole_hz`` in
+noise that is as strong at every frequency. The inverse is a filter of first order. Measurement, model and candidates go
 through it alike, so that coefficients keep their meaning and what is left is white.
 
 Source: Whittle 1953, Estimation and information in stationary time series, Arkiv for Matematik 2:423 (the fit to the

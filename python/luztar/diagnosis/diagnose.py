@@ -19,6 +19,7 @@ from .given import given_fit
 from .intervals import Estimate
 from .misfit import rms, usable
 from .prepare import Prepared
+from .profile import plain_coefficients
 from .score import Detection
 from .verdict import Judgement, folded, judge, shown_rms
 from .where import Map, Regime, regimes, residual_map
@@ -116,7 +117,7 @@ class Diagnosis:
     @functools.cached_property
     def next_experiment(self) -> Experiment | None:
         """The test that would tell apart what this measurement could not; simulated when it is first asked for."""
-        return next_experiment(self.fit, self.judgement, self.found)
+        return next_experiment(self.fit.whitened, self.judgement, self.found)
 
     @property
     def parameters(self) -> dict[str, Estimate]:
@@ -192,24 +193,25 @@ def diagnose(fitted: Fit, *, explained: float = 0.0, progress: Callable[[int, in
         assert isinstance(fitted, FreeFit)
         return diagnose_free(fitted, progress=progress)
     require_trustworthy(fitted.runs)
-    found, features = try_all(fitted, progress)
-    before = baseline(fitted).losses
+    white = fitted.whitened
+    found, features = try_all(white, progress)
+    before = baseline(white).losses
     gains = np.column_stack([before - c.search.losses for c in found]) if found else None
-    simpler = folded(fitted, found)
+    simpler = folded(white, found)
     # In the reversal zones the extrapolated starts are never quite right. A candidate that is no more than that comes
     # out as a simpler one: it cannot be named, and what it finds there is not held against the model.
     telling = [f for f in features if not (f.inside_zones and f.name in simpler)]
-    tested = detection(fitted, telling, gains)
-    judged = judge(fitted, found, tested, simpler, explained)
+    tested = detection(white, telling, gains)
+    judged = judge(white, found, tested, simpler, explained)
     return Diagnosis(
         fit=fitted,
         judgement=judged,
         where=regimes(fitted),
         map=residual_map(fitted),
-        candidates=tuple(_tried(fitted, c, judged, tested) for c in found),
+        candidates=tuple(_tried(white, c, judged, tested) for c in found),
         detection=tested,
         found=tuple(found),
-        unseen_rms=shown_rms(fitted, baseline(fitted)),
+        unseen_rms=shown_rms(white, baseline(white)),
     )
 
 
@@ -217,7 +219,8 @@ def _tried(fitted: Fit, c: Candidate, judged: Judgement, tested: Detection) -> T
     state = c.search.best
     assert state is not None
     runs = fitted.runs
-    modelled = [predict(r, m, state.coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
+    coefficients = plain_coefficients(fitted.problem, state)
+    modelled = [predict(r, m, coefficients) for r, m in zip(runs, state.made.matrix, strict=True)]
     share, errors = gain(baseline(fitted), c.search)
     return Tried(
         effect=c.name,

@@ -68,6 +68,24 @@ class Fit:
         assert self.search.best is not None
         return self.search.best
 
+    @functools.cached_property
+    def whitened(self) -> Fit:
+        """The same model fitted after whitening: what a look decides by.
+
+        Coefficients that are shown come from plain least squares: of a model that lacks something they are means over
+        the record, where those of a whitened fit are what suits its quick part. What is missing shows, and two
+        candidates are told apart, best where the noise is white.
+        """
+        if self.noise_floor.colour.whitening is None:
+            return self
+        weights = replace(self.problem.weights, colour=self.noise_floor.colour)
+        problem = replace(self.problem, weights=weights)
+        search = Search(self.search.folds)
+        search.visit(state(problem, self.state.terms))
+        search.refine(problem)
+        search.polish(problem)
+        return replace(self, problem=problem, search=search)
+
     @property
     def residual(self) -> tuple[np.ndarray, ...]:
         """Measured less modelled, per run, at the kept samples."""
@@ -167,7 +185,7 @@ def fit_prepared(
     """
     floor = floor or noise_floor(runs, model)
     level = max(friction_level(runs), 1e-12)
-    problem = Problem(runs, model, Weights(floor.moving_rms, level, model.band_hz, floor.colour), fixed_coefficients(model))
+    problem = Problem(runs, model, Weights(floor.moving_rms, level, model.band_hz), fixed_coefficients(model))
     first = state(problem, start_terms(model, runs))
     search = Search(Folds.of(first.blocks))
     search.visit(first)
@@ -234,20 +252,21 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
 
 def predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
     """Return the modelled torque or force of one run."""
-    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The common
-    # shift of the starts belongs to the sensor: the error is that of the model without it.
-    return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
+    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The column
+    # before is the common shift of the starts, that of the sensor.
+    return matrix[:, :-1] @ coefficients + (r.effort - matrix[:, -1])
 
 
 def predict_folds(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:
-    """Predict every stroke with coefficients that have not seen its fold."""
+    """Predict every stroke with coefficients that have not seen its fold, weighed as the problem says."""
     predicted = [r.effort.copy() for r in problem.runs]
     strokes = [s for r in problem.runs for s in r.strokes]
     for k, chosen in enumerate(search.fold_states):
         if chosen is None:
             continue
         inside = search.folds.of_stroke == k
-        coefficients = chosen.blocks.solve(~inside)
+        weighed = chosen if chosen.problem is problem else state(problem, chosen.terms)
+        coefficients = weighed.blocks.solve(~inside)
         for s, here in zip(strokes, inside, strict=True):
             if here:
                 r, m = problem.runs[s.run], chosen.made.matrix[s.run]

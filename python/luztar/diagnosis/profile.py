@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..model import Model, card
+from .colour import WHITE
 from .equations import Blocks, Columns, Weights, columns, fitted_blocks, loss
 from .grids import is_continuous, is_geometric, limits, points
 from .prepare import Prepared
@@ -70,6 +71,19 @@ class State:
     def made(self) -> Columns:
         """The columns."""
         return columns(self.problem.runs, self.terms, given(self.problem, self.terms))
+
+
+def plain(problem: Problem) -> Problem:
+    """Return the problem without whitening: what is shown is the error that people know."""
+    if problem.weights.colour == WHITE:
+        return problem
+    return replace(problem, weights=replace(problem.weights, colour=WHITE))
+
+
+def plain_coefficients(problem: Problem, fitted: State) -> np.ndarray:
+    """Return what plain least squares give for a state's terms."""
+    unweighted = plain(problem)
+    return fitted.coefficients if unweighted is problem else state(unweighted, fitted.terms).coefficients
 
 
 def owners(terms: Terms, model: Model) -> list[tuple[str, int]]:
