@@ -27,6 +27,8 @@ from .repeats import repeats
 # +-60 degrees each spans 3.4 degrees, a ninth of it.
 POSITION_HATS = 36
 SPEED_HATS = 6
+# Hats over time: what warms up or drifts does so over many strokes.
+TIME_HATS = 5
 # Knots of the hats over travel since the reversal, as shares of the range: a gap or break-away of 0.5 to 12 degrees in
 # 120 shows between the first and the last.
 TRAVEL_KNOTS = (0.0, 0.004, 0.008, 0.015, 0.022, 0.03, 0.04, 0.055, 0.075, 0.1, 0.15)
@@ -123,11 +125,12 @@ def saturated(runs: Sequence[Prepared]) -> list[np.ndarray]:
         place = hats(r.motion, position_knots)
         speed = hats(np.abs(r.speed), speed_knots)[:, 1:]
         travel = hats(travel_since_reversal(r), travel_knots)[:, :-1]
-        time = (r.time_s / longest)[:, None]
+        time = hats(r.time_s, np.linspace(0.0, longest, TIME_HATS))[:, 1:]
         slow = np.hstack([time, s * time])
         # What changes within the filter's memory has to go through the filter; the hats change slowly.
         quick = r.recording.columns([("viscous", []), ("inertia", [])], [0, 1]).T
-        made.append(np.hstack([place, s * place, speed, s * speed, s * travel, slow, quick]))
+        load = r.recording.columns([("load", [])], [0]).T if all(run.has_load for run in runs) else quick[:, :0]
+        made.append(np.hstack([place, s * place, speed, s * speed, s * travel, slow, quick, load]))
     return made
 
 

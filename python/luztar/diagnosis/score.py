@@ -72,6 +72,8 @@ class Detection:
     strokes : int
     kinds : dict of str to (float, str)
         P-value of each kind of test by itself, and what is strongest in it.
+    line_share : float
+        Share of the residual's square that the strongest spectral line takes.
     """
 
     p_value: float
@@ -80,6 +82,7 @@ class Detection:
     along: str
     strokes: int
     kinds: dict[str, tuple[float, str]]
+    line_share: float = 0.0
 
 
 def cells(runs: Sequence[Prepared]) -> list[Feature]:
@@ -137,7 +140,7 @@ def detect(
     count = sum(len(r.strokes) for r in runs)
     flips = signs(count)
     features = [*candidates, *cells(runs)]
-    scores = _scores(runs, model_columns, features, weights, start_shift, start_bound)
+    scores, line_share = _scores(runs, model_columns, features, weights, start_shift, start_bound)
     drawn: dict[tuple[str, str], list[np.ndarray]] = {}
     for feature, score in zip([*features, Feature("spectrum", ())], scores, strict=True):
         if np.count_nonzero(np.any(score != 0.0, axis=1)) > 1:
@@ -169,7 +172,7 @@ def detect(
     if not lack:
         return Detection(overall, adjusted, 1.0, "state", count, by_kind)
     along = kinds[lack[int(np.argmin(grouped[0, lack]))]]
-    return Detection(overall, adjusted, float(_smallest(grouped[:, lack])[0]), along, count, by_kind)
+    return Detection(overall, adjusted, float(_smallest(grouped[:, lack])[0]), along, count, by_kind, line_share)
 
 
 def _kind(feature: Feature) -> str:
@@ -195,9 +198,13 @@ def _scores(
     weights: Weights,
     start_shift: float,
     start_bound: float,
-) -> list[np.ndarray]:
-    """Return the scores of every feature, each of shape (strokes, q), then those of the spectral lines."""
+) -> tuple[list[np.ndarray], float]:
+    """Return the scores of every feature, each of shape (strokes, q), then those of the spectral lines.
+
+    The second value is the share of the residual's square that the strongest line takes.
+    """
     out: list[np.ndarray] = [np.empty(0)] * len(features)
+    line_share = 0.0
     for inside in (False, True):
         chosen = [i for i, f in enumerate(features) if f.inside_zones == inside]
         if not chosen:
@@ -234,8 +241,12 @@ def _scores(
             out[i] = scores
         if not inside:
             frequencies = line_frequencies_hz(max(r.duration_s for r in runs), weights.band_hz)
-            out.append(_line_scores(runs, keep, whiten, owners, belongs, q, residual, frequencies))
-    return out
+            lines = _line_scores(runs, keep, whiten, owners, belongs, q, residual, frequencies)
+            out.append(lines)
+            # A sine and a cosine over n samples have the square n / 2 each.
+            taken = np.sum(lines.sum(axis=0).reshape(-1, 2) ** 2, axis=1) / max(residual.size / 2.0, 1.0)
+            line_share = float(taken.max(initial=0.0) / max(float(residual @ residual), np.finfo(float).tiny))
+    return out, line_share
 
 
 def _line_scores(

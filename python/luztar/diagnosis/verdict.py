@@ -172,8 +172,9 @@ def judge(
         many = f"{len(real)} effects explain it equally well: this test cannot tell"
         unexplained = detection.lack_of_fit <= ALPHA and not few
         return Judgement("unexplained" if unexplained else "below_practical_size", (), names, simpler, many)
-    # The floor takes a line of the spectrum for noise; along the state it knows better.
-    above = fitted.error.floor_ratio > ABOVE_FLOOR or detection.along == "spectrum"
+    # The floor takes a line of the spectrum for noise; without it the error would be so much nearer to the noise.
+    line = detection.along == "spectrum" and detection.line_share > 1.0 - 1.0 / ABOVE_FLOOR**2
+    above = fitted.error.floor_ratio > ABOVE_FLOOR or line
     if detection.lack_of_fit <= ALPHA and above and not few:
         return Judgement("unexplained", (), names, simpler, "something repeats that no effect of the catalogue removes")
     if few and not worth:
