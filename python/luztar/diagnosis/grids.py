@@ -25,6 +25,8 @@ _POINTS = {
 }
 # A travel below this many steps of the position sensor is no travel to speak of.
 SHOWN_STEPS = 2.5
+# A break-away may be so much sharper than the sharpest of the grid.
+SHARPEST = 30.0
 # Searched in the logarithm.
 _GEOMETRIC = ("speed", "travel", "time", "rest", "width", "resolution", "delay")
 # A few values, taken as they are.
@@ -108,9 +110,12 @@ def limits(parameter: Parameter, runs: Sequence[Prepared]) -> tuple[float, float
     first, last = float(grid[0]), float(grid[-1])
     if kind == "travel":
         return first, parameter.high
-    if kind in ("resolution", "reach", "width"):
-        # Beyond, the law is another effect's: a blunt break-away is presliding, a wide dead zone an end stop, a spot
-        # as wide as the range any curve.
+    if kind == "resolution":
+        # A gap opens with the first travel back, however small.
+        return first / SHARPEST, last
+    if kind in ("reach", "width"):
+        # Beyond, the law is another effect's: a wide dead zone is an end stop, a spot as wide as the range any curve (a
+        # blunt break-away is presliding).
         return first, last
     if is_geometric(parameter):
         # Beyond four times the grid the law is a simpler one (a constant, or nothing).
