@@ -252,9 +252,9 @@ def finish(problem: Problem, search: Search, unseen: tuple[Prepared, ...], floor
 
 def predict(r: Prepared, matrix: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
     """Return the modelled torque or force of one run."""
-    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The column
-    # before is the common shift of the starts, that of the sensor.
-    return matrix[:, :-1] @ coefficients + (r.effort - matrix[:, -1])
+    # The last column is the measurement less what is known beforehand, so that the difference puts it back. The common
+    # shift of the starts belongs to the sensor: the error is that of the model without it.
+    return matrix[:, :-2] @ coefficients[:-1] + (r.effort - matrix[:, -1])
 
 
 def predict_folds(problem: Problem, search: Search) -> tuple[np.ndarray, ...]:

@@ -20,7 +20,7 @@ from ..model import Model
 from .colour import WHITE, Colour, colour_of
 from .equations import Blocks, loss
 from .folds import Folds
-from .prepare import Prepared, decimates_alone
+from .prepare import Prepared, comparison_band_hz, decimates_alone
 from .repeats import repeats
 
 # Hat functions over position and speed. A period of cogging up to twelve per turn is 30 degrees: with 36 hats over
@@ -197,7 +197,8 @@ def noise_floor(runs: Sequence[Prepared], model: Model) -> NoiseFloor:
     """Estimate the noise floor from runs alone; of the model only the structure and the band are looked at."""
     fitted = _Saturated.of(runs)
     low_passed = not (decimates_alone(model) or model.comparison.filter_already_applied)
-    colour = colour_of(fitted.pieces(runs), model.band_hz, low_passed)
+    band_hz = min(comparison_band_hz(model, r.recording.decimate / r.step_s) for r in runs)
+    colour = colour_of(fitted.pieces(runs), band_hz, low_passed)
     unit = model.structure.effort_unit
     repeated = repeats(runs)
     if repeated is not None:

@@ -106,27 +106,32 @@ struct Gap<'a> {
 
 impl Gap<'_> {
     fn last(&self) -> Option<Crossing> {
-        self.after.checked_sub(1).map(|k| self.crossings[k])
+        self.nth(0, false)
     }
 
     fn next(&self) -> Option<Crossing> {
-        self.crossings.get(self.after).copied()
+        self.nth(0, true)
+    }
+
+    /// A crossing on one side, counted from the gap.
+    fn nth(&self, i: usize, out: bool) -> Option<Crossing> {
+        let k = if out {
+            self.after + i
+        } else {
+            self.after.checked_sub(i + 1)?
+        };
+        self.crossings.get(k).copied()
     }
 
     /// The crossings before, the nearest first, while the motion was slowing down in one direction; and those after,
     /// while it was speeding up.
     fn way(&self, out: bool) -> Vec<Crossing> {
-        let nth = |i: usize| {
-            if out {
-                self.crossings.get(self.after + i)
-            } else {
-                self.after.checked_sub(i + 1).map(|k| &self.crossings[k])
-            }
-        };
         let mut way: Vec<Crossing> = Vec::with_capacity(MOST_PASSAGES);
         let mut pause = f64::INFINITY;
         while way.len() < MOST_PASSAGES {
-            let Some(next) = nth(way.len()) else { break };
+            let Some(next) = self.nth(way.len(), out) else {
+                break;
+            };
             if let Some(here) = way.last() {
                 let took = (next.time - here.time).abs();
                 if next.direction != here.direction || took > pause + SAMPLING {
@@ -134,7 +139,7 @@ impl Gap<'_> {
                 }
                 pause = took;
             }
-            way.push(*next);
+            way.push(next);
         }
         way
     }
@@ -148,11 +153,17 @@ impl Gap<'_> {
             return true;
         }
         let took = next.time - last.time;
-        let long = |way: &[Crossing]| match way {
-            [a, b, ..] => took > REST_OVER_NEXT * (b.time - a.time).abs(),
-            _ => false,
+        let long = |out| {
+            self.next_pause(out)
+                .is_some_and(|pause| took > REST_OVER_NEXT * pause)
         };
-        long(&self.way(false)) && long(&self.way(true))
+        long(false) && long(true)
+    }
+
+    /// The time between the two crossings next to this gap on one side, where they go the same way.
+    fn next_pause(&self, out: bool) -> Option<f64> {
+        let (near, far) = (self.nth(0, out)?, self.nth(1, out)?);
+        (near.direction == far.direction).then(|| (far.time - near.time).abs())
     }
 
     /// The step in which the motion stands, as its value in the record.
@@ -218,15 +229,14 @@ impl Gap<'_> {
     /// end.
     fn ramp(&self, out: bool, known: Option<Instant>, power: f64) -> Option<Ramp> {
         let crossing = if out { self.next() } else { self.last() }?;
-        let takes = match (known, &self.way(out)[..]) {
-            (Some(instant), _) => (instant.time - crossing.time).abs().max(0.5 * SAMPLING),
-            (None, [a, b, ..]) => {
-                (b.time - a.time).abs() / (SECOND_OVER_FIRST.powf(1.0 / power) - 1.0)
-            }
-            _ => self
-                .last()
-                .zip(self.next())
-                .map_or(0.0, |(a, b)| 0.5 * (b.time - a.time)),
+        let side = if out { 1.0 } else { -1.0 };
+        let takes = if let Some(instant) = known {
+            (side * (crossing.time - instant.time)).max(0.5 * SAMPLING)
+        } else if let Some(pause) = self.next_pause(out) {
+            pause / (SECOND_OVER_FIRST.powf(1.0 / power) - 1.0)
+        } else {
+            let ends = self.last().zip(self.next());
+            ends.map_or(0.0, |(a, b)| 0.5 * (b.time - a.time))
         };
         Some(Ramp {
             border: crossing.border,

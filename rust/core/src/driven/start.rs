@@ -21,7 +21,7 @@ pub type Start = Vec<Passage>;
 pub const POWERS: [f64; 9] = [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75, 4.0];
 
 /// From so few starts nothing is read.
-pub const FEWEST_STARTS: usize = 4;
+const FEWEST_STARTS: usize = 4;
 
 /// The power of time with which motions start in this record.
 pub fn gentleness(starts: &[Start]) -> f64 {
