@@ -55,6 +55,15 @@ class Colour:
         """Zero and pole of the filter that undoes it; None for white noise."""
         return (self.zero_hz, self.pole_hz) if self.pole_hz > self.zero_hz else None
 
+    @property
+    def text(self) -> str:
+        """Say it in words; empty for white noise."""
+        if self.whitening is None:
+            return ""
+        times = (self.pole_hz / self.zero_hz) ** 2
+        strong = f"its power below {self.zero_hz:.2g} Hz is {times:.2g} times that above {self.pole_hz:.2g} Hz"
+        return f"it wanders ({strong}): candidates are judged after whitening"
+
     def shape(self, frequency_hz: np.ndarray) -> np.ndarray:
         """Return the power over that of the flat part."""
         return (frequency_hz**2 + self.pole_hz**2) / (frequency_hz**2 + self.zero_hz**2)

@@ -233,7 +233,7 @@ def _with_reversals(
         moving,
         float(np.sqrt(moving**2 + squares / max(zone_samples, 1))),
         unit,
-        f"{method}; in the reversal zones plus the uncertain instant of the start",
+        "; ".join(filter(None, [method, "in the reversal zones plus the uncertain instant of the start", colour.text])),
         colour,
     )
 
