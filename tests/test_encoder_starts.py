@@ -73,3 +73,32 @@ def test_a_delay_of_12_ms_is_told_from_a_longer_break_away():
     assert found.named == ("delay",)
     delay = found.steps[-1].fit.parameters["delay.time_s"]
     assert delay.low <= 0.012 <= delay.high and delay.high - delay.low < 0.012
+
+
+@pytest.mark.parametrize("noise_counts", [0.05, 0.1, 0.2])
+def test_an_encoder_that_flickers_about_a_border_names_nothing(noise_counts):
+    runs = []
+    for k in range(3):
+        made = simulate_rig_full(seed=[11, k])
+        shaken = made.true_angle_rad / STEP_RAD + np.random.default_rng([5, k]).normal(
+            0.0, noise_counts, made.time_s.size
+        )
+        runs.append(
+            luztar.Run(time=made.time_s, angle=np.round(shaken) * STEP_RAD, torque=made.torque_nm, name=f"run{k}")
+        )
+    assert luztar.study(luztar.Model.rig(), runs).named == ()
+
+
+def test_a_record_that_only_creeps_is_refused_by_name():
+    time_s = np.arange(0.0, 200.0, 0.01)
+    # A triangle of 1.5 degrees a second: below the 2 of a reversal zone all along.
+    angle_deg = 20.0 * (2.0 / np.pi) * np.arcsin(np.sin(2.0 * np.pi * time_s * 1.5 / 80.0))
+    torque_nm = 0.75 * np.sign(np.gradient(angle_deg)) + 0.05 * np.random.default_rng(0).normal(size=time_s.size)
+    creeping = luztar.Run(
+        time=time_s, angle=np.deg2rad(np.round(angle_deg / 0.02) * 0.02), torque=torque_nm, name="creeping"
+    )
+    with pytest.raises(luztar.MeasurementError, match="creeping.*fast enough.*Record strokes faster"):
+        luztar.fit(luztar.Model.rig(), [creeping])
+    made = simulate_rig_full(seed=[11, 1])
+    quick = luztar.Run(time=made.time_s, angle=made.angle_rad, torque=made.torque_nm, name="quick")
+    assert np.isfinite(luztar.fit(luztar.Model.rig(), [creeping, quick]).error.rms)

@@ -153,6 +153,9 @@ def _features(problem: Problem, base: State, tried: State, c: Card) -> list[Feat
 def paired_error(a: Sequence[float] | np.ndarray, b: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return the sum of the differences of two losses by stroke and its standard error."""
     difference = np.asarray(a) - np.asarray(b)
+    if difference.size < 2:
+        # One stroke has no scatter to be judged by.
+        return float(difference.sum()), np.inf
     return float(difference.sum()), float(difference.std(ddof=1) * np.sqrt(difference.size))
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from ..errors import MeasurementError
 from ..model import Model
 from .colour import WHITE, Colour, colour_of
 from .equations import Blocks, loss
@@ -194,7 +195,19 @@ class _Saturated:
 
 
 def noise_floor(runs: Sequence[Prepared], model: Model) -> NoiseFloor:
-    """Estimate the noise floor from runs alone; of the model only the structure and the band are looked at."""
+    """Estimate the noise floor from runs alone; of the model only the structure and the band are looked at.
+
+    Raises
+    ------
+    MeasurementError
+        No run moves fast enough away from the reversal zones.
+    """
+    if not any((r.usable & ~r.zone).any() for r in runs):
+        raise MeasurementError(
+            "nowhere is the motion fast enough, and away from reversals, to tell noise from friction",
+            ", ".join(r.name for r in runs),
+            "Record strokes faster than 2 degrees/s (an axis: 3 % of its top speed), or compare with a larger --band.",
+        )
     fitted = _Saturated.of(runs)
     low_passed = not (decimates_alone(model) or model.comparison.filter_already_applied)
     band_hz = min(comparison_band_hz(model, r.recording.decimate / r.step_s) for r in runs)

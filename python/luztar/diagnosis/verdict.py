@@ -193,12 +193,14 @@ def shown_rms(fitted: Fit, search: Search) -> float:
 def shows(fitted: Fit, before: Search, after: Search) -> bool:
     """Whether the unseen error as it is shown falls from one search to another: a step that nobody sees is none.
 
-    It falls over all samples, or where the motion is under way: what is shown knows nothing of the uncertain instants
-    of the starts, and a model with sharper corners, though nearer to the truth, pays more for them.
+    It falls over all samples; or it falls where the motion is under way and hardly rises in all: what is shown knows
+    nothing of the uncertain instants of the starts, and a model with sharper corners, though nearer to the truth, pays
+    more for them.
     """
     was, now = (_unseen_residual(fitted, s) for s in (before, after))
-    if rms(usable(fitted.runs, now)) < rms(usable(fitted.runs, was)):
-        return True
+    rise = rms(usable(fitted.runs, now)) / max(rms(usable(fitted.runs, was)), np.finfo(float).tiny)
+    if rise < 1.0 or rise > ABOVE_FLOOR:
+        return rise < 1.0
     moving = [r.usable & ~r.zone for r in fitted.runs]
     return rms(_chosen(now, moving)) < rms(_chosen(was, moving))
 

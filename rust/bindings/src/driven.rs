@@ -229,8 +229,11 @@ pub fn normal_equations<'py>(
     columns: PyReadonlyArray2<'_, f64>,
     strokes: Vec<(usize, usize, f64)>,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let length = columns.shape()[1].max(1);
-    let all: Vec<&[f64]> = columns.as_slice()?.chunks(length).collect();
+    let (count, length) = (columns.shape()[0], columns.shape()[1]);
+    let values = columns.as_slice()?;
+    let all: Vec<&[f64]> = (0..count)
+        .map(|i| &values[i * length..(i + 1) * length])
+        .collect();
     array(py, Blocks::of(&all, &rows(strokes)))
 }
 

@@ -142,7 +142,7 @@ impl Recording {
         let mut resolution = Resolution::of(position, &smooth);
         let mut known = Vec::new();
         let seen = if resolution.quantised {
-            let Joined { position, starts } = join_steps(position);
+            let Joined { position, starts } = join_steps(position, resolution.step);
             known = starts;
             smooth = smoothed(&position)?;
             position

@@ -17,6 +17,24 @@ const SECOND_OVER_FIRST: f64 = 3.0;
 /// Crossings come a sample early or late: a way that speeds up may seem to slow down by as much.
 const SAMPLING: f64 = 1.0;
 
+/// From so many crossings of one border in a row on the position flickers about it: up and back is a turn of the motion,
+/// up, back and up again may be one that passes under a little noise.
+const FLICKER: usize = 4;
+
+/// A flicker comes again and again: what takes more than this share of all of it is a rest beside the border.
+const BESIDE: f64 = 0.5;
+
+/// A border is the middle of two steps but for a rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Where a crossing belongs to a rest that flickers about its border.
+#[derive(Clone, Copy, PartialEq)]
+enum Flicker {
+    Not,
+    Begins,
+    Ends,
+}
+
 /// One crossing of a border between steps.
 #[derive(Clone, Copy)]
 struct Crossing {
@@ -28,6 +46,50 @@ struct Crossing {
     direction: f64,
     /// First sample after the crossing.
     index: usize,
+    flicker: Flicker,
+}
+
+/// All crossings of a record, of those that flicker about one border the first and the last.
+fn crossings(position: &[f64], step: f64) -> Vec<Crossing> {
+    let all: Vec<Crossing> = (1..position.len())
+        .filter(|i| position[*i] != position[i - 1])
+        .map(|i| Crossing {
+            time: i as f64 - 0.5,
+            border: 0.5 * (position[i] + position[i - 1]),
+            direction: (position[i] - position[i - 1]).signum(),
+            index: i,
+            flicker: Flicker::Not,
+        })
+        .collect();
+    let mut kept = Vec::with_capacity(all.len());
+    for group in all.chunk_by(|a, b| (a.border - b.border).abs() < 0.25 * step) {
+        keep(group, &mut kept);
+    }
+    kept
+}
+
+/// Keeps the crossings of one border, of those that come again and again the first and the last.
+fn keep(group: &[Crossing], kept: &mut Vec<Crossing>) {
+    let [first, .., last] = group else {
+        return kept.extend_from_slice(group);
+    };
+    if group.len() < FLICKER {
+        return kept.extend_from_slice(group);
+    }
+    let pause = |k: &usize| group[*k].time - group[*k - 1].time;
+    let longest = (1..group.len())
+        .max_by(|a, b| pause(a).total_cmp(&pause(b)))
+        .unwrap_or(1);
+    if pause(&longest) > BESIDE * (last.time - first.time) {
+        keep(&group[..longest], kept);
+        return keep(&group[longest..], kept);
+    }
+    let marked = |crossing: &Crossing, flicker| Crossing {
+        flicker,
+        ..*crossing
+    };
+    kept.push(marked(first, Flicker::Begins));
+    kept.push(marked(last, Flicker::Ends));
 }
 
 /// How well the instant of a start is known.
@@ -48,17 +110,9 @@ pub struct Joined {
     pub starts: Vec<KnownStart>,
 }
 
-/// Joins the crossings of a stepped position.
-pub fn join_steps(position: &[f64]) -> Joined {
-    let crossings: Vec<Crossing> = (1..position.len())
-        .filter(|i| position[*i] != position[i - 1])
-        .map(|i| Crossing {
-            time: i as f64 - 0.5,
-            border: 0.5 * (position[i] + position[i - 1]),
-            direction: (position[i] - position[i - 1]).signum(),
-            index: i,
-        })
-        .collect();
+/// Joins the crossings of a position in steps of the height `step`.
+pub fn join_steps(position: &[f64], step: f64) -> Joined {
+    let crossings = crossings(position, step);
     // One gap before the first crossing, one after each.
     let gaps: Vec<Gap> = (0..=crossings.len())
         .map(|after| Gap {
@@ -67,7 +121,10 @@ pub fn join_steps(position: &[f64]) -> Joined {
         })
         .collect();
     let paused: Vec<usize> = (0..gaps.len()).filter(|k| gaps[*k].is_pause()).collect();
-    let rests: Vec<Rest> = paused.iter().map(|k| gaps[*k].rest(position)).collect();
+    let rests: Vec<Rest> = paused
+        .iter()
+        .map(|k| gaps[*k].rest(position, step))
+        .collect();
     let Settling {
         power,
         rests: settled,
@@ -79,6 +136,11 @@ pub fn join_steps(position: &[f64]) -> Joined {
     let mut joined = position.to_vec();
     for (gap, known) in gaps.iter().zip(&known) {
         gap.fill(&mut joined, *known, power);
+    }
+    // Whatever is read off the crossings, the position was in the step that the sensor showed, or on its border.
+    let half = 0.5 * step * (1.0 + ROUNDING);
+    for (x, shown) in joined.iter_mut().zip(position) {
+        *x = x.clamp(shown - half, shown + half);
     }
     let starts = gaps
         .iter()
@@ -134,7 +196,8 @@ impl Gap<'_> {
             };
             if let Some(here) = way.last() {
                 let took = (next.time - here.time).abs();
-                if next.direction != here.direction || took > pause + SAMPLING {
+                let flickers = next.flicker != Flicker::Not;
+                if flickers || next.direction != here.direction || took > pause + SAMPLING {
                     break;
                 }
                 pause = took;
@@ -146,6 +209,9 @@ impl Gap<'_> {
 
     /// Whether the motion pauses here: it turns, or this takes long beside what comes before and after.
     fn is_pause(&self) -> bool {
+        if self.flickers() {
+            return false;
+        }
         let (Some(last), Some(next)) = (self.last(), self.next()) else {
             return true;
         };
@@ -160,6 +226,12 @@ impl Gap<'_> {
         long(false) && long(true)
     }
 
+    /// Whether a flicker ends or begins here: the position is then known to be that of its border.
+    fn flickers(&self) -> bool {
+        let here = |crossing: Option<Crossing>| crossing.is_some_and(|c| c.flicker != Flicker::Not);
+        here(self.last()) || here(self.next())
+    }
+
     /// The time between the two crossings next to this gap on one side, where they go the same way.
     fn next_pause(&self, out: bool) -> Option<f64> {
         let (near, far) = (self.nth(0, out)?, self.nth(1, out)?);
@@ -171,10 +243,7 @@ impl Gap<'_> {
         position[self.last().map_or(0, |c| c.index)]
     }
 
-    fn rest(&self, position: &[f64]) -> Rest {
-        let middle = self.middle(position);
-        let border = self.next().or(self.last()).map_or(middle, |c| c.border);
-        let half = (border - middle).abs();
+    fn rest(&self, position: &[f64], step: f64) -> Rest {
         let passages = |out: bool| -> Vec<Passage> {
             self.way(out)
                 .iter()
@@ -185,8 +254,8 @@ impl Gap<'_> {
                 .collect()
         };
         Rest {
-            low: middle - half,
-            step: 2.0 * half,
+            low: self.middle(position) - 0.5 * step,
+            step,
             way_in: passages(false),
             way_out: passages(true),
         }
@@ -196,6 +265,9 @@ impl Gap<'_> {
     fn fill(&self, joined: &mut [f64], known: Option<Settled>, power: f64) {
         let from = self.last().map_or(0, |c| c.index);
         let to = self.next().map_or(joined.len(), |c| c.index);
+        if self.flickers() {
+            return self.fill_flicker(&mut joined[from..to], from, power);
+        }
         let level = known.map_or(joined[from.min(to - 1)], |k| k.level);
         let mut ramps = [
             self.ramp(false, known.and_then(|k| k.stops), power),
@@ -219,6 +291,25 @@ impl Gap<'_> {
         for (i, x) in joined.iter_mut().enumerate().take(to).skip(from) {
             let away = |ramp: &Ramp| ramp.away(i as f64, level);
             *x = level + ramps.iter().flatten().map(away).sum::<f64>();
+        }
+    }
+
+    /// Writes a rest at a border, or the way from it or to it.
+    fn fill_flicker(&self, joined: &mut [f64], from: usize, power: f64) {
+        let ends = [self.last(), self.next()];
+        let [Some(a), Some(b)] = ends else {
+            let border = ends.into_iter().flatten().next().map(|c| c.border);
+            return joined.fill(border.unwrap_or_default());
+        };
+        for (i, x) in joined.iter_mut().enumerate() {
+            let share = ((from + i) as f64 - a.time) / (b.time - a.time);
+            let gone = match (a.flicker, b.flicker) {
+                (Flicker::Begins, _) => 0.0,
+                (Flicker::Ends, Flicker::Not) => share.powf(power),
+                (Flicker::Not, _) => 1.0 - (1.0 - share).powf(power),
+                _ => share,
+            };
+            *x = a.border + (b.border - a.border) * gone;
         }
     }
 
@@ -283,7 +374,7 @@ mod tests {
     #[test]
     fn an_even_motion_comes_back_within_what_sampling_leaves() {
         let x: Vec<f64> = (0..3000).map(|i| 0.0013 * f64::from(i)).collect();
-        let joined = join_steps(&stepped(&x)).position;
+        let joined = join_steps(&stepped(&x), STEP).position;
         for (a, b) in joined.iter().zip(&x).skip(100).take(2800) {
             // a crossing is known to half a sample: half of 0.0013
             assert!((a - b).abs() < 0.0007, "{a} {b}");
@@ -308,7 +399,7 @@ mod tests {
     #[test]
     fn starts_are_known_better_than_to_half_a_step() {
         let x = strokes();
-        let joined = join_steps(&stepped(&x));
+        let joined = join_steps(&stepped(&x), STEP);
         assert_eq!(joined.starts.len(), 8);
         for k in 0..8 {
             let (rest, start) = (200 + 2000 * k, 300 + 2000 * k);
@@ -328,12 +419,51 @@ mod tests {
     }
 
     #[test]
+    fn a_flicker_about_a_border_is_a_rest_at_the_border() {
+        // The strokes above, shifted so that they rest on a border, under noise of a twentieth of a step.
+        let mut state = 1_u64;
+        let mut even = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
+        };
+        let x: Vec<f64> = strokes().iter().map(|x| x + 0.007).collect();
+        let raw = stepped(
+            &x.iter()
+                .map(|x| x + 0.1 * STEP * even())
+                .collect::<Vec<_>>(),
+        );
+        let rest = 100..290;
+        assert!(raw[rest.clone()].windows(2).any(|p| p[0] != p[1]));
+        let joined = join_steps(&raw, STEP).position;
+        assert!(joined[rest].windows(2).all(|p| p[0] == p[1]));
+        for (i, (a, b)) in joined.iter().zip(&x).enumerate() {
+            assert!((a - b).abs() < STEP, "{i}: {a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_start_that_skips_counts_rests_where_it_was_read() {
+        // A slow way, a rest, and thirty steps between two samples at once.
+        let x: Vec<f64> = (0..400)
+            .map(|i| {
+                0.25 * STEP * f64::from(i.min(100)) + 30.0 * STEP * f64::from((i - 300).max(0))
+            })
+            .collect();
+        let raw = stepped(&x);
+        for (a, b) in join_steps(&raw, STEP).position[..300].iter().zip(&raw) {
+            assert!((a - b).abs() <= 0.5 * STEP + 1e-9, "{a} {b}");
+        }
+    }
+
+    #[test]
     fn a_turn_rests_in_its_step_and_never_leaves_it() {
         let x: Vec<f64> = (0..4000)
             .map(|i| (f64::from(i) * 1e-3 * std::f64::consts::PI / 2.0).sin())
             .collect();
         let raw = stepped(&x);
-        for (a, b) in join_steps(&raw).position.iter().zip(&raw) {
+        for (a, b) in join_steps(&raw, STEP).position.iter().zip(&raw) {
             assert!((a - b).abs() <= 0.5 * STEP + 1e-12);
         }
     }
