@@ -6,6 +6,7 @@ import pytest
 import luztar
 from generators.rig import simulate_rig_full
 from luztar.diagnosis.prepare import prepare
+from luztar.errors import MeasurementError
 
 STEP_RAD = np.deg2rad(0.02)
 RUNS = 8
@@ -97,7 +98,7 @@ def test_a_record_that_only_creeps_is_refused_by_name():
     creeping = luztar.Run(
         time=time_s, angle=np.deg2rad(np.round(angle_deg / 0.02) * 0.02), torque=torque_nm, name="creeping"
     )
-    with pytest.raises(luztar.MeasurementError, match="creeping.*fast enough.*Record strokes faster"):
+    with pytest.raises(MeasurementError, match="creeping.*fast enough.*Record strokes faster"):
         luztar.fit(luztar.Model.rig(), [creeping])
     made = simulate_rig_full(seed=[11, 1])
     quick = luztar.Run(time=made.time_s, angle=made.angle_rad, torque=made.torque_nm, name="quick")
