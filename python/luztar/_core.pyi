@@ -48,6 +48,7 @@ __all__ = [
     "sampled_cubics",
     "simulate_steering",
     "solve_block",
+    "whitened",
     "solve_bodies_exactly",
     "solve_steering_exactly",
     "steering_highest_rad_s",

